@@ -66,6 +66,7 @@ impl<'p> FormulaJudge<'p> {
                 around: Vec::new(),
             }),
             worst_margin: outcome.margin().zip(unit),
+            unvalued: outcome.unvalued.map(seconds),
         };
         JudgedFormula { verdict, unseen }
     }

@@ -116,6 +116,7 @@ fn verdict_result(program: &Program, verdict: &MonitorVerdict) -> VerdictResult 
         failures: verdict.failures,
         failure: failure(program, monitor, verdict),
         worst_margin: verdict.worst_margin.map(|(value, _)| (value, unit.to_owned())),
+        unvalued: verdict.unvalued.map(seconds),
     }
 }
 

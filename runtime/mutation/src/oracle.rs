@@ -47,6 +47,7 @@ mod tests {
             failures: 0,
             failure: None,
             worst_margin: None,
+            unvalued: None,
         };
         let outcome = if departs { ConformanceOutcome::Departs } else { ConformanceOutcome::Conforms };
         let conformance = ConformanceVerdict { model: "M".into(), outcome, departure: None, why: None };

@@ -310,6 +310,7 @@ pub fn gaps(results: &CampaignResults) -> Vec<String> {
     let mut gaps = Vec::new();
     errors(results, &mut gaps);
     never_decided(results, &mut gaps);
+    unvalued(results, &mut gaps);
     missed_bins(results, &mut gaps);
     unreached_goals(results, &mut gaps);
     for machine in results.machines.iter().filter(|m| !is_whole(m)) {
@@ -380,6 +381,27 @@ fn errors(results: &CampaignResults, gaps: &mut Vec<String>) {
             "{} broke off in error: what they would have shown is not known.",
             text::count(broken, "test")
         ));
+    }
+}
+
+/// Verdicts that are open since a number that they compare was none, with the first place of each requirement.
+fn unvalued(results: &CampaignResults, gaps: &mut Vec<String>) {
+    for (i, requirement) in results.requirements.iter().enumerate() {
+        let open = results.tests.iter().filter_map(|t| {
+            let verdict = t.judgement.verdicts.get(i).filter(|v| v.outcome == Outcome::Inconclusive)?;
+            Some((t, verdict.unvalued?))
+        });
+        let open: Vec<(&TestResult, f64)> = open.collect();
+        if let Some((test, at)) = open.first() {
+            gaps.push(format!(
+                "{} stayed inconclusive in {}, since it compares a number that is none (NaN, or a division by zero): \
+                 first in {} at {}.",
+                requirement.name,
+                text::count(open.len(), "test"),
+                test.name,
+                text::moment(*at)
+            ));
+        }
     }
 }
 
@@ -455,6 +477,7 @@ mod tests {
             failures: 1,
             failure: None,
             worst_margin: Some((-0.5, "m".to_owned())),
+            unvalued: None,
         };
         in_short(&verdict, &failure)
     }
@@ -464,6 +487,23 @@ mod tests {
         let steps = [(0.0, "signal y = 0 m"), (3.0, "signal x = -1 m"), (3.0, "signal y = 2 m")];
         assert_eq!(short_of(&steps), "signal x = -1 m, y = 2 m");
         assert_eq!(short_of(&[(0.0, "signal y = 0 m"), (3.0, "signal y = 2 m")]), "signal y = 2 m");
+    }
+
+    #[test]
+    fn what_compares_a_number_that_is_none_is_said_to() {
+        let mut results = crate::fixture::campaign(4);
+        let said = |results: &CampaignResults| gaps(results).into_iter().find(|g| g.contains("NaN"));
+        assert_eq!(said(&results), None);
+        for test in &mut results.tests[2..4] {
+            let verdict = &mut test.judgement.verdicts[0];
+            (verdict.outcome, verdict.unvalued) = (Outcome::Inconclusive, Some(1.5));
+        }
+        let (name, test) = (&results.requirements[0].name, &results.tests[2].name);
+        let expected = format!(
+            "{name} stayed inconclusive in 2 tests, since it compares a number that is none (NaN, or a division by zero): \
+             first in {test} at 1.50 s."
+        );
+        assert_eq!(said(&results), Some(expected));
     }
 
     #[test]

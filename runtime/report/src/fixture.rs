@@ -300,6 +300,7 @@ fn verdict(s: usize, i: usize, r: usize, is_broken: bool) -> VerdictResult {
         failures: u32::from(outcome == Outcome::Fail),
         failure,
         worst_margin,
+        unvalued: None,
     }
 }
 

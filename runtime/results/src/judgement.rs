@@ -74,6 +74,9 @@ pub struct VerdictResult {
     pub failure: Option<FirstFailure>,
     /// The least margin, with the symbol of its unit.
     pub worst_margin: Option<(f64, String)>,
+    /// When a comparison first had no value, in seconds: why what has not failed is inconclusive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unvalued: Option<f64>,
 }
 
 /// The first violation in a test.

@@ -125,6 +125,7 @@ mod tests {
             failures: 0,
             failure: None,
             worst_margin: None,
+            unvalued: None,
         };
         TestResult {
             name: format!("s.{name}").into(),
