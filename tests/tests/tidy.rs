@@ -20,7 +20,6 @@ const LONG: &[(&str, usize)] = &[
     ("runtime/harness/tests/programs.rs", 557),
     ("runtime/sut/tests/environment.rs", 541),
     ("runtime/ta/src/network/code.rs", 958),
-    ("runtime/ta/src/network/semantics.rs", 731),
 ];
 
 /// Files whose lines may end in blanks: a log that prints one, a text that breaks off after one.

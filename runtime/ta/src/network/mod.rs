@@ -6,6 +6,7 @@ pub(crate) mod by_location;
 pub(crate) mod code;
 mod compile;
 mod compiler;
+mod enumeration;
 pub(crate) mod error;
 mod functions;
 pub(crate) mod graph;

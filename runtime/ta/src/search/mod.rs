@@ -16,6 +16,7 @@ pub(crate) mod round_search;
 pub(crate) mod rounds;
 pub(crate) mod slice;
 pub(crate) mod start;
+mod state_test;
 mod stepper;
 pub(crate) mod store;
 pub(crate) mod waiting;
