@@ -229,6 +229,45 @@ impl<E, C, T> TemporalFormula<E, C, T> {
         }
     }
 
+    /// The events whose absence alone meets it each time that it is asked, whatever asks: those of Q in `always (P implies not Q)`, under any
+    /// operators.
+    #[must_use]
+    pub fn kept_by_silence_of(&self) -> Vec<&E> {
+        let asked = self.of_the_run(TemporalLook::Always).unwrap_or(self);
+        if let TemporalKind::Junction(TemporalJunction::Implies, parts) = &asked.kind {
+            parts[1].silenced(true).unwrap_or_default()
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// The events without which it is true, or false, at each moment, whatever else happens. `None`: there are none such.
+    fn silenced(&self, truth: bool) -> Option<Vec<&E>> {
+        match &self.kind {
+            TemporalKind::Events(events) => (!truth).then(|| events.iter().collect()),
+            TemporalKind::Constant(_) | TemporalKind::Condition(_) => None,
+            TemporalKind::Not(of) => of.silenced(!truth),
+            TemporalKind::Junction(junction, parts) => {
+                let [a, b] = parts.as_ref();
+                let (either, first) = match junction {
+                    TemporalJunction::And => (!truth, truth),
+                    TemporalJunction::Or => (truth, truth),
+                    TemporalJunction::Implies => (truth, !truth),
+                };
+                let (a, b) = (a.silenced(first), b.silenced(truth));
+                if either { a.or(b) } else { a.zip(b).map(|(a, b)| [a, b].concat()) }
+            }
+            TemporalKind::Look { of, .. } => of.silenced(truth),
+            TemporalKind::Reach { of, .. } => {
+                if truth {
+                    None
+                } else {
+                    of[1].silenced(false)
+                }
+            }
+        }
+    }
+
     /// What is asked of the run as a whole, and without an end: of every moment, or of some moment.
     pub(crate) fn of_the_run(&self, look: TemporalLook) -> Option<&Self> {
         match &self.kind {

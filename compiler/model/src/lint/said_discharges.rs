@@ -62,7 +62,8 @@ fn in_pattern<'a>(scenario: &Scenario, sentence: &'a TypedPattern) -> Option<Wea
         RequirementPattern::Counts { events, bound: CountBound::AtLeast | CountBound::Exactly, .. } => {
             asked(scenario, "counts", events.iter())
         }
-        RequirementPattern::Formula(formula) => asked(scenario, "is met by", formula.met_by().into_iter()),
+        RequirementPattern::Formula(formula) => asked(scenario, "is met by", formula.met_by().into_iter())
+            .or_else(|| forbidden_events(scenario, formula.kept_by_silence_of())),
         // Its scope alone triggers it: who keeps silent passes.
         RequirementPattern::NeverWhile { events, condition: None }
         | RequirementPattern::Counts { events, bound: CountBound::AtMost, .. }
@@ -90,8 +91,12 @@ fn asked<'a>(
 }
 
 /// What is forbidden may be commanded: without the command the device does nothing. Only silence must not be enough.
-fn forbidden_events<'a>(scenario: &Scenario, forbidden: &'a [TypedOccurrence]) -> Option<WeakEvidence<'a>> {
-    let patterns = forbidden.iter().filter_map(TypedOccurrence::as_event);
+fn forbidden_events<'a>(
+    scenario: &Scenario,
+    forbidden: impl IntoIterator<Item = &'a TypedOccurrence>,
+) -> Option<WeakEvidence<'a>> {
+    let forbidden: Vec<&TypedOccurrence> = forbidden.into_iter().collect();
+    let patterns = forbidden.iter().filter_map(|o| o.as_event());
     let events: Vec<_> = patterns.map(|p| (p, of_pattern(scenario, p))).collect();
     let silent = !events.is_empty()
         && events.len() == forbidden.len()
