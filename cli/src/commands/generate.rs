@@ -24,7 +24,7 @@ use super::inspect::{
     InspectedRun, json_lines,
     reasoning::{ModelRunEnd, ReasoningFilter, ending, reasoning},
 };
-use super::search_options::{DelayArg, SearchOrderArg, WitnessArg};
+use super::search_options::{DelayArg, SearchOrderArg, SearchThreadsArgs, WitnessArg};
 use crate::{exit::CommandExit, fault::CommandFault, files, input, results_folder::ResultsFolder, terminal};
 
 /// Generate tests from a scenario's suites and write them as readable `.hri`.
@@ -65,9 +65,8 @@ pub struct GenerateArgs {
     /// Of suites by search, in which order states are looked at [default: what the witness needs].
     #[arg(long, value_enum)]
     order: Option<SearchOrderArg>,
-    /// Of suites by search, threads that search at once.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
-    threads: u16,
+    #[command(flatten)]
+    threads: SearchThreadsArgs,
     /// Print what was generated as one JSON document.
     #[arg(long)]
     json: bool,
@@ -93,7 +92,7 @@ pub fn run(args: &GenerateArgs) -> Result<CommandExit, CommandFault> {
             delays: args.delays.map(Into::into),
             search: ProofOptions {
                 order: args.order.map(Into::into),
-                threads: usize::from(args.threads),
+                threads: args.threads.count(),
                 ..ProofOptions::default()
             },
         };

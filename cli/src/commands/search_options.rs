@@ -4,6 +4,24 @@ use clap::ValueEnum;
 use hrdsl_ir::suite::{DelayChoice, WitnessKind};
 use hrdsl_runtime::prove::SearchOrder;
 
+/// With more, storing what they find takes longer than finding it.
+const MOST_THREADS: usize = 4;
+
+/// `--threads`.
+#[derive(clap::Args)]
+pub struct SearchThreadsArgs {
+    /// Threads that search at once; answers do not depend on it [default: one for each core, of up to four].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: Option<u16>,
+}
+
+impl SearchThreadsArgs {
+    pub fn count(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, |n| n.get().min(MOST_THREADS));
+        self.threads.map_or_else(cores, usize::from)
+    }
+}
+
 /// What `--witness` takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum WitnessArg {

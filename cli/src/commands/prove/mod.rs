@@ -12,7 +12,7 @@ use std::{path::PathBuf, sync::Arc, time::Duration};
 use hrdsl_runtime::prove::{ProofOptions, TimeFrame};
 use hrdsl_source::printable;
 
-use super::search_options::{DelayArg, SearchOrderArg, WitnessArg};
+use super::search_options::{DelayArg, SearchOrderArg, SearchThreadsArgs, WitnessArg};
 use crate::{edge_sources::EdgeSources, exit::CommandExit, fault::CommandFault, files, input, terminal};
 use asked::QueriedScenario;
 use clock::ProofClock;
@@ -104,9 +104,8 @@ pub struct ProveSearchArgs {
     /// Keep states apart that differ in one-way counters alone, or in those that nobody reads: the same answers from more states.
     #[arg(long)]
     exact_counters: bool,
-    /// Threads that search at once.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
-    threads: u16,
+    #[command(flatten)]
+    threads: SearchThreadsArgs,
     /// Everything random comes from this.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -133,7 +132,7 @@ impl ProveSearchArgs {
             explain: self.explain,
             skip_committed: self.skip_committed,
             exact_counters: self.exact_counters,
-            threads: usize::from(self.threads),
+            threads: self.threads.count(),
             seed: self.seed,
             ..ProofOptions::default()
         };

@@ -1,7 +1,8 @@
 //! A search that has several threads compute the successors of many states, and stores them as one thread would.
 
 use super::{
-    crew::{LocalBatch, LocalContext},
+    batch::{LocalBatch, LocalExpansion, in_order},
+    crew::LocalContext,
     refusal::LocalSearchError,
     search::{FEW, LocalGoalPath, LocalPause, LocalSearch, LocalWorkMemory},
     space::LocalWorkspace,
@@ -18,45 +19,47 @@ impl LocalSearch<'_, '_> {
         memory: &mut LocalWorkMemory,
         go_on: &dyn Fn(&SearchProgress) -> bool,
     ) -> Result<Option<LocalPause>, LocalSearchError> {
-        let LocalWorkMemory { worker, crew: Some(crew), batches, round } = memory else { return Ok(None) };
+        let LocalWorkMemory { worker, crew: Some(crew), batches, round, order } = memory else {
+            return Ok(None);
+        };
         self.waiting.take(&self.store.nodes, AT_ONCE, round);
         let context = LocalContext {
             space: &self.space,
             store: &self.store,
             zones: &self.zones,
             goals: &self.compiled,
-            open: &self.open,
+            open: if self.left > 0 { &self.open } else { &[] },
+            levels: &self.levels,
         };
-        let chunks = crew.expand(&context, round, batches);
+        crew.expand(&context, round, &worker.zone, batches);
+        in_order(batches, order);
+        let first = self.store.nodes.len() as u32;
         // One thread takes a few that still wait at a time, and looks up in between: so does this.
-        let (mut done, mut end) = (0, 0);
-        for batch in &mut batches[..chunks] {
-            let mut first = 0;
-            for at in 0..batch.nodes.len() {
-                if done == end {
-                    let pause = if done > 0 { self.pause(usize::MAX, true, go_on) } else { None };
-                    let few = self.few_that_wait(&round[done..]);
-                    if pause.is_some() || (few.is_none() && self.waiting.len() > 0) {
-                        self.waiting.give_back(&round[done..]);
-                        return Ok(pause);
-                    }
-                    end = few.map_or(round.len(), |few| done + few);
+        let mut end = 0;
+        for (done, &(batch, at)) in order.iter().enumerate() {
+            if done == end {
+                let pause = if done > 0 { self.pause(usize::MAX, true, go_on) } else { None };
+                let few = self.few_that_wait(&round[done..]);
+                if pause.is_some() || (few.is_none() && self.waiting.len() > 0) {
+                    self.waiting.give_back(&round[done..]);
+                    return Ok(pause);
                 }
-                done += 1;
-                let expansion = &mut batch.nodes[at];
-                let (node, next, failure) = (expansion.node, expansion.end, expansion.failure.take());
-                // Another of the round may have driven it out.
-                if self.zones.forget(node) {
-                    self.visited += 1;
-                    self.transitions += expansion.transitions;
-                    for successor in first..next {
-                        self.store_successor(node, batch, successor, &mut worker.work)?;
-                    }
-                    if let Some(failure) = failure {
-                        return Err(self.led_to(node, failure));
-                    }
+                end = few.map_or(round.len(), |few| done + few);
+            }
+            let batch = &mut batches[batch];
+            let successors = batch.first_successor(at)..batch.nodes[at].end;
+            let LocalExpansion { node, transitions, failure, .. } = &mut batch.nodes[at];
+            let (node, transitions, failure) = (*node, *transitions, failure.take());
+            // Another of the round may have driven it out.
+            if self.zones.forget(node) {
+                self.visited += 1;
+                self.transitions += transitions;
+                for successor in successors {
+                    self.store_successor(node, batch, successor, first, &mut worker.work)?;
                 }
-                first = next;
+                if let Some(failure) = failure {
+                    return Err(self.led_to(node, failure));
+                }
             }
         }
         Ok(None)
@@ -73,12 +76,23 @@ impl LocalSearch<'_, '_> {
         node: u32,
         batch: &LocalBatch,
         successor: usize,
+        first: u32,
         w: &mut LocalWorkspace,
     ) -> Result<(), LocalSearchError> {
-        let successor = &batch.successors[successor];
+        let number = batch.successors[successor].number;
         self.met.clear();
         self.met.extend_from_slice(batch.hits(successor));
-        self.hit(LocalGoalPath { node, last: Some(successor.number) });
-        if batch.get(successor, w) { self.insert(w, node, successor.number) } else { Ok(()) }
+        self.hit(LocalGoalPath { node, last: Some(number) });
+        let (words, bounds) = (self.store.layout.words, w.zone.bounds().len());
+        let Some(arrival) = batch.arrival(successor, words, bounds, first) else { return Ok(()) };
+        if let Some((new, true)) = self.arrive(arrival, node, number)
+            && self.left > 0
+        {
+            let state = &mut w.effect.target;
+            let size = state.len();
+            state.copy_from_slice(batch.state(successor, size));
+            self.look(state, &mut w.stack, new)?;
+        }
+        Ok(())
     }
 }

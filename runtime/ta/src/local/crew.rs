@@ -3,14 +3,10 @@
 //! What is stored is only looked at meanwhile; what they find is stored afterwards, in the order in which one thread finds it. So
 //! nothing depends on their number.
 
-use std::{
-    ops::ControlFlow,
-    sync::{Mutex, PoisonError},
-};
-
-use rayon::prelude::*;
+use std::ops::ControlFlow;
 
 use super::{
+    batch::LocalBatch,
     refusal::LocalSearchError,
     space::{LocalStateSpace, LocalWorkspace, LocalZoneFilter},
     waiting::WaitingZones,
@@ -21,8 +17,8 @@ use crate::{
     search::{
         goals::CompiledGoals,
         store::{NIL, PassedList, hash_words},
+        threads::CrewThreads,
     },
-    witness::error::SearchError,
 };
 
 /// States that one thread expands in one go.
@@ -34,8 +30,10 @@ pub(super) struct LocalContext<'a, 'm, 'p> {
     pub store: &'a PassedList<LocalZoneBound>,
     pub zones: &'a WaitingZones,
     pub goals: &'a CompiledGoals,
-    /// The goals that are not met yet.
+    /// The goals that are not met yet; empty if there are none.
     pub open: &'a [bool],
+    /// By member and location: its place in a topological order.
+    pub levels: &'a [Vec<u32>],
 }
 
 /// Computes successors, with memory that it uses again and again.
@@ -47,44 +45,15 @@ pub(super) struct LocalWorker {
     pub state: Vec<i64>,
     pub zone: LocalZone,
     packed: Vec<u64>,
+    driven_out: Vec<u32>,
+    narrow: Vec<i16>,
 }
 
-/// Workers, and their threads.
+/// A worker for each thread.
 pub(super) struct LocalCrew {
-    workers: Vec<LocalWorker>,
-    pool: rayon::ThreadPool,
-}
-
-/// A successor that something comes of: it meets goals by its transition, or nothing stored simulates it.
-#[derive(Clone, Copy)]
-pub(super) struct LocalSuccessor {
-    /// Its number among those of its node.
-    pub number: u32,
-    hits: (usize, usize),
-    /// Where its state, its synchronised zone and its bounds begin, with the number of clocks that matter; and its zone.
-    found: Option<(usize, usize, usize, usize, usize)>,
-}
-
-/// What one state leads to.
-pub(super) struct LocalExpansion {
-    pub node: u32,
-    pub transitions: usize,
-    /// Where its successors end in those of the batch.
-    pub end: usize,
-    /// Its last transition fails.
-    pub failure: Option<LocalSearchError>,
-}
-
-/// What the states of a chunk lead to.
-#[derive(Default)]
-pub(super) struct LocalBatch {
-    pub nodes: Vec<LocalExpansion>,
-    pub successors: Vec<LocalSuccessor>,
-    hits: Vec<usize>,
-    states: Vec<i64>,
-    together: Vec<LocalZoneBound>,
-    lu: Vec<LocalLuBounds>,
-    zones: Vec<LocalZoneBound>,
+    /// Each is made by the thread that needs it.
+    workers: Vec<Option<Box<LocalWorker>>>,
+    threads: CrewThreads,
 }
 
 impl LocalWorker {
@@ -123,37 +92,54 @@ impl LocalWorker {
         c.store.layout.unpack(c.store.packed(c.store.nodes[node as usize].discrete), &mut self.state);
         let mut transitions = 0;
         let mut packed = std::mem::take(&mut self.packed);
+        let mut driven_out = std::mem::take(&mut self.driven_out);
+        let mut narrow = std::mem::take(&mut self.narrow);
         let end = self.successors(c.space, |w, before, firing, number| {
             transitions += 1;
-            let first = batch.hits.len();
-            met_by_edges(c.space, c.goals, before, firing, &mut |goal| {
-                if c.open[goal] {
-                    batch.hits.push(goal);
-                }
-            });
-            c.store.layout.pack(&w.effect.target, &mut packed);
-            let known = c.store.find(hash_words(&packed), &packed);
-            let new = !known.is_some_and(|discrete| is_simulated(c.store, discrete, w));
-            let found = new.then(|| batch.put(w));
-            if new || batch.hits.len() > first {
-                let hits = (first, batch.hits.len());
-                batch.successors.push(LocalSuccessor { number, hits, found });
+            if !c.open.is_empty() {
+                met_by_edges(c.space, c.goals, before, firing, &mut |goal| {
+                    if c.open[goal] {
+                        batch.hit(goal);
+                    }
+                });
             }
+            c.store.layout.pack(&w.effect.target, &mut packed);
+            let hash = hash_words(&packed);
+            let known = c.store.find(hash, &packed);
+            driven_out.clear();
+            let simulated = known.is_some_and(|discrete| {
+                is_simulated(c.store, discrete, 0, (&w.together, &w.lu), &mut driven_out)
+            });
+            if !simulated {
+                batch.found(c, w, known, (hash, &packed), &driven_out, &mut narrow);
+            }
+            batch.end_successor(number);
             Ok(())
         });
-        self.packed = packed;
-        let expansion = LocalExpansion { node, transitions, end: batch.successors.len(), failure: end.err() };
-        batch.nodes.push(expansion);
+        (self.packed, self.driven_out, self.narrow) = (packed, driven_out, narrow);
+        batch.end_node(node, transitions, end.err());
     }
 }
 
-/// Whether a stored state of this discrete one simulates that in the workspace.
-fn is_simulated(store: &PassedList<LocalZoneBound>, discrete: u32, w: &LocalWorkspace) -> bool {
+/// Whether a stored state of this discrete one, from node `first` on, simulates that in the workspace; otherwise those that it simulates
+/// are added to `driven_out`.
+pub(super) fn is_simulated(
+    store: &PassedList<LocalZoneBound>,
+    discrete: u32,
+    first: u32,
+    (together, lu): (&[LocalZoneBound], &[LocalLuBounds]),
+    driven_out: &mut Vec<u32>,
+) -> bool {
     let mut at = store.head(discrete);
-    while at != NIL {
+    // The newest stands first.
+    while at != NIL && at >= first {
         let node = &store.nodes[at as usize];
-        if zone::is_simulated(&w.together, store.zone(node, w.lu.len() + 1), &w.lu) {
+        let old = store.zone(node, lu.len() + 1);
+        if zone::is_simulated(together, old, lu) {
             return true;
+        }
+        if zone::is_simulated(old, together, lu) {
+            driven_out.push(at);
         }
         at = node.next;
     }
@@ -177,74 +163,33 @@ pub(super) fn met_by_edges(
     }
 }
 
-impl LocalBatch {
-    fn clear(&mut self) {
-        self.nodes.clear();
-        self.successors.clear();
-        self.hits.clear();
-        self.states.clear();
-        self.together.clear();
-        self.lu.clear();
-        self.zones.clear();
-    }
-
-    /// Keeps what is in the workspace.
-    fn put(&mut self, w: &LocalWorkspace) -> (usize, usize, usize, usize, usize) {
-        let at = (self.states.len(), self.together.len(), self.lu.len(), w.lu.len(), self.zones.len());
-        self.states.extend_from_slice(&w.effect.target);
-        self.together.extend_from_slice(&w.together);
-        self.lu.extend_from_slice(&w.lu);
-        self.zones.extend_from_slice(w.zone.bounds());
-        at
-    }
-
-    /// The goals that the transition to the successor meets.
-    pub(super) fn hits(&self, successor: &LocalSuccessor) -> &[usize] {
-        &self.hits[successor.hits.0..successor.hits.1]
-    }
-
-    /// Puts the successor into a workspace that has had one of the same network; `false`: a stored one simulates it.
-    pub(super) fn get(&self, successor: &LocalSuccessor, w: &mut LocalWorkspace) -> bool {
-        let Some((state, together, lu, clocks, zone)) = successor.found else { return false };
-        let size = w.effect.target.len();
-        w.effect.target.copy_from_slice(&self.states[state..state + size]);
-        w.together.clear();
-        w.together.extend_from_slice(&self.together[together..together + (clocks + 1) * (clocks + 1)]);
-        w.lu.clear();
-        w.lu.extend_from_slice(&self.lu[lu..lu + clocks]);
-        let bounds = w.zone.bounds_mut();
-        let length = bounds.len();
-        bounds.copy_from_slice(&self.zones[zone..zone + length]);
-        true
-    }
-}
-
 impl LocalCrew {
-    /// # Errors
-    /// If there are no threads.
-    pub(super) fn new(threads: usize, zone: &LocalZone) -> Result<Self, SearchError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|e| SearchError::Internal(format!("no threads: {e}")))?;
-        let worker = || LocalWorker { zone: zone.clone(), ..LocalWorker::default() };
-        Ok(Self { workers: (0..threads).map(|_| worker()).collect(), pool })
+    pub(super) fn new(threads: usize) -> Self {
+        Self { workers: (0..threads).map(|_| None).collect(), threads: CrewThreads::new(threads) }
     }
 
-    /// Computes what these states lead to, each chunk of them into a batch: so many batches are in use afterwards.
-    pub(super) fn expand(&mut self, c: &LocalContext, round: &[u32], batches: &mut Vec<LocalBatch>) -> usize {
-        let chunks = round.len().div_ceil(CHUNK);
-        batches.resize_with(batches.len().max(chunks), LocalBatch::default);
-        // Whoever is free takes the next chunk: which worker does it makes no difference.
-        let workers: Vec<Mutex<&mut LocalWorker>> = self.workers.iter_mut().map(Mutex::new).collect();
-        let batches = batches[..chunks].par_iter_mut().with_max_len(1);
-        self.pool.install(|| {
-            batches.zip(round.par_chunks(CHUNK)).for_each(|(batch, nodes)| {
-                let me = rayon::current_thread_index().unwrap_or(0) % workers.len();
-                let mut worker = workers[me].lock().unwrap_or_else(PoisonError::into_inner);
-                batch.clear();
+    /// Computes what these states lead to, each worker into a batch of its own. `like`: a zone of the network.
+    pub(super) fn expand(
+        &mut self,
+        c: &LocalContext,
+        round: &[u32],
+        like: &LocalZone,
+        batches: &mut Vec<LocalBatch>,
+    ) {
+        batches.resize_with(self.workers.len(), LocalBatch::default);
+        batches.iter_mut().for_each(LocalBatch::clear);
+        let new = || Box::new(LocalWorker { zone: like.clone(), ..LocalWorker::default() });
+        let workers = self.workers.iter_mut().zip(batches).map(|(worker, slot)| {
+            |(number, nodes): (usize, &[u32])| {
+                let worker = worker.get_or_insert_with(new);
+                // On the stack, since those of other workers stand beside its slot.
+                let mut batch = std::mem::take(slot);
+                batch.begin_chunk(number);
                 // On after a failure, too: what fails may have been driven out when its turn comes.
-                nodes.iter().for_each(|&node| worker.expand(c, node, batch));
-            });
+                nodes.iter().for_each(|&node| worker.expand(c, node, &mut batch));
+                *slot = batch;
+            }
         });
-        chunks
+        self.threads.share(workers, round.chunks(CHUNK).enumerate(), &|| true);
     }
 }

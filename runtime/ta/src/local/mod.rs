@@ -48,6 +48,7 @@
 
 mod access;
 mod at_once;
+mod batch;
 mod crew;
 mod order;
 mod refusal;

@@ -3,12 +3,13 @@
 use std::{rc::Rc, sync::Arc};
 
 use super::{
-    crew::{LocalBatch, LocalCrew, LocalWorker, met_by_edges},
+    batch::{ArrivedZone, LocalArrival, LocalBatch},
+    crew::{LocalCrew, LocalWorker, is_simulated, met_by_edges},
     order,
     refusal::{LocalSearchError, NotApplicableError},
     space::{LocalStateSpace, LocalWorkspace},
-    waiting::WaitingZones,
-    zone::{self, LocalZoneBound},
+    waiting::{PackedZone, WaitingZones},
+    zone::LocalZoneBound,
 };
 use crate::{
     network::{
@@ -21,7 +22,7 @@ use crate::{
         options::SearchOrder,
         report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, SearchStatistics, WidestVariable},
         slice,
-        store::{NIL, PassedList, StateLayout, hash_words},
+        store::{NIL, PassedList, StateLayout, hash_words, hash_zone},
         waiting::{WaitingList, level, levels},
     },
     witness::{build, error::SearchError, run::WitnessRun, schedule::ScheduleOptions},
@@ -67,13 +68,14 @@ pub(crate) struct LocalSearch<'m, 'p> {
     pub(super) compiled: CompiledGoals,
     hits: Vec<Option<LocalGoalPath>>,
     pub(super) open: Vec<bool>,
-    left: usize,
+    pub(super) left: usize,
     /// Its zones are the stored ones as far as all processes have one time, of the clocks that matter.
     pub(super) store: PassedList<LocalZoneBound>,
     pub(super) zones: WaitingZones,
     pub(super) waiting: WaitingList,
-    levels: Vec<Vec<u32>>,
+    pub(super) levels: Vec<Vec<u32>>,
     packed: Vec<u64>,
+    narrow: Vec<i16>,
     pub(super) met: Vec<usize>,
     driven_out: Vec<u32>,
     peak: usize,
@@ -95,6 +97,8 @@ pub(super) struct LocalWorkMemory {
     pub crew: Option<LocalCrew>,
     pub batches: Vec<LocalBatch>,
     pub round: Vec<u32>,
+    /// Of each state of the round: in which batch it is, and its place there.
+    pub order: Vec<(usize, usize)>,
 }
 
 /// Why [`LocalSearch::go`] has come back.
@@ -150,6 +154,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             waiting: WaitingList::new(options.order, options.seed),
             levels: levels(model),
             packed: Vec::new(),
+            narrow: Vec::new(),
             met: Vec::new(),
             driven_out: Vec::new(),
             peak: 0,
@@ -200,7 +205,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             self.space.start(work)?;
             zone.clone_from(&work.zone);
             if self.threads > 1 {
-                memory.crew = Some(LocalCrew::new(self.threads, zone)?);
+                memory.crew = Some(LocalCrew::new(self.threads));
             }
             self.insert(work, NIL, 0)?;
         }
@@ -343,78 +348,101 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
     }
 
     /// Stores the symbolic state in `w`, unless a stored one simulates it.
-    pub(super) fn insert(
-        &mut self,
-        w: &mut LocalWorkspace,
-        parent: u32,
-        number: u32,
-    ) -> Result<(), LocalSearchError> {
+    fn insert(&mut self, w: &mut LocalWorkspace, parent: u32, number: u32) -> Result<(), LocalSearchError> {
         self.store.layout.pack(&w.effect.target, &mut self.packed);
         let hash = hash_words(&self.packed);
         let known = self.store.find(hash, &self.packed);
+        self.driven_out.clear();
+        let zone = (w.together.as_slice(), w.lu.as_slice());
+        if known.is_some_and(|discrete| is_simulated(&self.store, discrete, 0, zone, &mut self.driven_out)) {
+            return Ok(());
+        }
+        let (packed, driven_out) = (std::mem::take(&mut self.packed), std::mem::take(&mut self.driven_out));
+        let mut narrow = std::mem::take(&mut self.narrow);
+        let arrival = LocalArrival {
+            packed: &packed,
+            hash,
+            discrete: known.unwrap_or(NIL),
+            level: level(&self.levels, &w.effect.target, &[]),
+            together: ArrivedZone::New { bounds: &w.together, hash: hash_zone(&w.together) },
+            lu: &w.lu,
+            zone: PackedZone::of(&w.zone, &mut narrow),
+            compared: self.store.nodes.len() as u32,
+            driven_out: &driven_out,
+        };
+        let stored = self.arrive(arrival, parent, number);
+        (self.packed, self.driven_out, self.narrow) = (packed, driven_out, narrow);
+        match stored {
+            Some((node, true)) if self.left > 0 => self.look(&mut w.effect.target, &mut w.stack, node),
+            Some(_) | None => Ok(()),
+        }
+    }
+
+    /// Stores a symbolic state, unless a stored one simulates it: its node, and whether its discrete state is new.
+    pub(super) fn arrive(&mut self, a: LocalArrival, parent: u32, number: u32) -> Option<(u32, bool)> {
+        let since = (a.compared as usize) < self.store.nodes.len();
+        let known = match a.discrete {
+            NIL if since => self.store.find(a.hash, a.packed),
+            NIL => None,
+            discrete => Some(discrete),
+        };
         let mut lost = false;
         let discrete = match known {
-            None => self.store.add_discrete(hash, &self.packed),
+            None => self.store.add_discrete(a.hash, a.packed),
             Some(discrete) => {
-                if self.compare(discrete, w) {
-                    return Ok(());
+                self.driven_out.clear();
+                let zone = match a.together {
+                    ArrivedZone::Stored(at) => self.store.zone_at(at, (a.lu.len() + 1).pow(2)),
+                    ArrivedZone::New { bounds, .. } => bounds,
+                };
+                if is_simulated(&self.store, discrete, a.compared, (zone, a.lu), &mut self.driven_out) {
+                    return None;
                 }
+                self.driven_out.extend_from_slice(a.driven_out);
                 lost = self.drive_out(discrete);
                 discrete
             }
         };
-        let id = self.store.add(parent, number, discrete, &w.together, &[]);
-        self.look(w, known.is_none(), id)?;
-        self.zones.push(&w.zone);
-        self.waiting.push(id, lost, level(&self.levels, &w.effect.target, &[]), 0);
-        Ok(())
-    }
-
-    /// Whether a stored state simulates that in `w`; otherwise those that it simulates are in `driven_out`.
-    fn compare(&mut self, discrete: u32, w: &LocalWorkspace) -> bool {
-        self.driven_out.clear();
-        let mut at = self.store.head(discrete);
-        while at != NIL {
-            let node = &self.store.nodes[at as usize];
-            let old = self.store.zone(node, w.lu.len() + 1);
-            if zone::is_simulated(&w.together, old, &w.lu) {
-                return true;
-            }
-            if zone::is_simulated(old, &w.together, &w.lu) {
-                self.driven_out.push(at);
-            }
-            at = node.next;
-        }
-        false
+        let zone = match a.together {
+            ArrivedZone::Stored(at) => at,
+            ArrivedZone::New { bounds, hash } => self.store.intern(bounds, hash),
+        };
+        let id = self.store.add(parent, number, discrete, zone, &[]);
+        self.zones.push(a.zone);
+        self.waiting.push(id, lost, a.level, 0);
+        Some((id, known.is_none()))
     }
 
     /// Forgets the states that the new one simulates; those that wait need not be explored. Whether there are any.
     fn drive_out(&mut self, discrete: u32) -> bool {
+        let mut any = false;
         for &n in &self.driven_out {
-            self.waiting.covered(n);
-            self.store.cover(n);
-            self.zones.forget(n);
+            // One that came in between may have driven it out before.
+            if !self.store.nodes[n as usize].covered {
+                self.waiting.covered(n);
+                self.store.cover(n);
+                self.zones.forget(n);
+                any = true;
+            }
         }
-        if !self.driven_out.is_empty() {
+        if any {
             self.store.unlink(discrete);
         }
-        !self.driven_out.is_empty()
+        any
     }
 
-    /// Looks at the goals that a state meets: all have one time in it.
-    fn look(&mut self, w: &mut LocalWorkspace, new: bool, node: u32) -> Result<(), LocalSearchError> {
-        if self.left == 0 {
-            return Ok(());
-        }
+    /// Looks at the goals that a new discrete state meets: all have one time in it.
+    pub(super) fn look(
+        &mut self,
+        state: &mut [i64],
+        stack: &mut Vec<i64>,
+        node: u32,
+    ) -> Result<(), LocalSearchError> {
         self.met.clear();
         let model = self.space.model;
-        let settled = !model.any_committed(&w.effect.target);
-        let state = &mut w.effect.target;
-        if new {
-            let states =
-                self.compiled.states(state, None, &mut w.stack, model, settled, &self.open, &mut self.met);
-            states.map_err(SearchError::from)?;
-        }
+        let settled = !model.any_committed(state);
+        let states = self.compiled.states(state, None, stack, model, settled, &self.open, &mut self.met);
+        states.map_err(SearchError::from)?;
         self.hit(LocalGoalPath { node, last: None });
         Ok(())
     }

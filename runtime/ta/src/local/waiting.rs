@@ -25,6 +25,21 @@ struct ZoneSlab<N> {
     free: Vec<u32>,
 }
 
+/// A zone, in half the room where its bounds let it.
+pub(super) enum PackedZone<'a> {
+    Narrow(&'a [i16]),
+    Wide(&'a [LocalZoneBound]),
+}
+
+impl<'a> PackedZone<'a> {
+    /// Packs the zone, with that room for it.
+    pub(super) fn of(zone: &'a LocalZone, room: &'a mut Vec<i16>) -> Self {
+        let bounds = zone.bounds();
+        room.resize(bounds.len(), NO_BOUND);
+        if narrow(bounds, room) { Self::Narrow(room) } else { Self::Wide(bounds) }
+    }
+}
+
 /// In which slab a zone is, and its number there.
 enum ZonePlace {
     Narrow(u32),
@@ -68,16 +83,18 @@ impl<N: Copy + Default> ZoneSlab<N> {
 
 impl WaitingZones {
     /// The next node waits with this zone.
-    pub(super) fn push(&mut self, zone: &LocalZone) {
-        let bounds = zone.bounds();
-        let (number, room) = self.narrow.room(bounds.len());
-        let place = if narrow(bounds, room) {
-            ZonePlace::Narrow(number)
-        } else {
-            self.narrow.free.push(number);
-            let (number, room) = self.wide.room(bounds.len());
-            room.copy_from_slice(bounds);
-            ZonePlace::Wide(number)
+    pub(super) fn push(&mut self, zone: PackedZone) {
+        let place = match zone {
+            PackedZone::Narrow(bounds) => {
+                let (number, room) = self.narrow.room(bounds.len());
+                room.copy_from_slice(bounds);
+                ZonePlace::Narrow(number)
+            }
+            PackedZone::Wide(bounds) => {
+                let (number, room) = self.wide.room(bounds.len());
+                room.copy_from_slice(bounds);
+                ZonePlace::Wide(number)
+            }
         };
         self.places.push(place.pack());
         self.count += 1;
@@ -167,7 +184,7 @@ mod tests {
             let mut zone = LocalZone::start(1, 3);
             for (bounds, old) in all {
                 zone.bounds_mut().copy_from_slice(&bounds);
-                waiting.push(&zone);
+                waiting.push(PackedZone::of(&zone, &mut Vec::new()));
                 here.push(Some(zone.clone()));
                 let old = old.min(here.len() - 1);
                 let known = here[old].take();

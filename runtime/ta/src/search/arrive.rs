@@ -3,14 +3,14 @@
 use crate::{
     network::{error::ModelError, model::CompiledNetwork},
     search::{
-        batch::{ExpansionBatch, GoalHit, GoalPath, PendingState},
+        batch::{ExpansionBatch, GoalHit, GoalPath, PendingState, PendingZone},
         covering::{covers, demands, subsumes},
         expand::{ExpansionContext, ExpansionState, WorkerMemory, arrival},
         goals::SymbolicStateRef,
         monotone::{may_drive_out, no_worse},
         options::SubsumptionRelation,
         stepper::SymbolicSuccessor,
-        store::{NIL, hash_words},
+        store::{NIL, hash_words, hash_zone},
         waiting,
     },
     zone::{
@@ -267,7 +267,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
     ) {
         let subsumption = self.c.options.subsumption;
         let dim = frame.dim();
-        let (words, place, first) = (batch.words.len(), batch.zones.len(), batch.covered.len());
+        let (place, first) = (batch.zones.len(), batch.covered.len());
         zone.store(&mut batch.zones);
         if let Some(discrete) = known {
             let flat = &batch.zones[place..];
@@ -298,19 +298,24 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
             }
         }
         batch.words.extend_from_slice(&m.packed);
-        let ranks = batch.ranks.len();
         batch.ranks.extend_from_slice(&m.ranks);
-        batch.items.push(PendingState {
+        let hash_of_zone = hash_zone(&batch.zones[place..]);
+        let zone = match self.c.store.find_zone(&batch.zones[place..], hash_of_zone) {
+            Some(at) => {
+                batch.zones.truncate(place);
+                PendingZone::Stored(at)
+            }
+            None => PendingZone::New { at: place as u32, hash: hash_of_zone },
+        };
+        batch.push(PendingState {
             parent,
             via,
             discrete: known.unwrap_or(NIL),
-            hash,
             level: waiting::level(&m.levels, state, &m.ranks),
-            dim,
-            words,
-            zone: place,
-            ranks,
-            covered: (first, batch.covered.len()),
+            hash,
+            zone,
+            dim: dim as u32,
+            covered: (first as u32, batch.covered.len() as u32),
         });
     }
 }

@@ -94,9 +94,6 @@ pub(super) struct WorkerMemory<N> {
     pub(super) worth: Vec<Option<bool>>,
 }
 
-/// An expansion that met a fault.
-pub(crate) struct ExpansionError;
-
 impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     pub(crate) fn new(model: &'m CompiledNetwork<'p>, clocks: ZoneClocks) -> Self {
         let greatest = model.extrapolation.diagonals.as_ref().map_or(Vec::new(), |d| d.greatest.clone());
@@ -163,17 +160,19 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     }
 
     /// Expands a stored state.
+    ///
+    /// # Errors
+    /// A fault of the model, and the path to it.
     pub(crate) fn expand(
         &mut self,
         c: &ExpansionContext<N>,
         node: u32,
         batch: &mut ExpansionBatch<N>,
-    ) -> Result<(), ExpansionError> {
+    ) -> Result<(), (ModelError, GoalPath)> {
         self.load(c, node);
         batch.visited += 1;
         if let Err(error) = self.probe(c, node, &mut batch.findings) {
-            batch.fault = Some((error, GoalPath { node, via: None }));
-            return Err(ExpansionError);
+            return Err((error, GoalPath { node, via: None }));
         }
         let visit = NodeExpansion { model: self.model, c, node, keep: c.options.keep_committed };
         // Committed states that are met are put behind this one, and expanded by the same loop. `via` counts through all of them, so that
@@ -187,8 +186,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             let reached = current.via;
             self.locals[at] = current;
             if let Err(error) = result {
-                batch.fault = Some((error, GoalPath { node, via: reached }));
-                return Err(ExpansionError);
+                return Err((error, GoalPath { node, via: reached }));
             }
             at += 1;
         }

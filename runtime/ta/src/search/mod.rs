@@ -1,7 +1,7 @@
 //! The search for goals: zones with one time for all automata, many goals at once, no state twice.
 
 mod arrive;
-mod batch;
+pub(crate) mod batch;
 mod counter_steps;
 mod covering;
 mod crew;
@@ -19,4 +19,5 @@ pub(crate) mod start;
 mod state_test;
 mod stepper;
 pub(crate) mod store;
+pub(crate) mod threads;
 pub(crate) mod waiting;

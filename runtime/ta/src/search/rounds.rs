@@ -10,7 +10,7 @@ use std::{ops::ControlFlow, rc::Rc};
 use crate::{
     network::{actions::PathTransition, error::ModelError, model::CompiledNetwork, query::ReachabilityGoal},
     search::{
-        batch::{ExpansionBatch, GoalHit, GoalPath},
+        batch::{ChunkPlace, ExpansionBatch, GoalHit, GoalPath, in_order},
         crew::ExpansionCrew,
         expand::ExpansionContext,
         goals::CompiledGoals,
@@ -46,6 +46,7 @@ pub(super) struct ZoneGraphSearch<'m, 'p, N> {
     store: PassedList<N>,
     waiting: WaitingList,
     crew: ExpansionCrew<'m, 'p, N>,
+    /// What each worker has found in it.
     batches: Vec<ExpansionBatch<N>>,
     /// The states of the round.
     round: Vec<u32>,
@@ -105,7 +106,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
                 Some(_) => WaitingList::by_time(),
                 None => WaitingList::new(options.order, options.seed),
             },
-            crew: ExpansionCrew::new(model, clocks, options.threads)?,
+            crew: ExpansionCrew::new(model, clocks, options.threads),
             batches: Vec::new(),
             round: Vec::new(),
             options,
@@ -238,6 +239,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             latest: self.latest,
         };
         self.crew.first().begin(&context, &mut batch).map_err(SearchError::from)?;
+        batch.end_chunk(0, None);
         self.batches = vec![batch];
         self.merge()?;
         Ok(())
@@ -249,16 +251,18 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         let first = self.store.nodes.len() as u32;
         let mut batches = std::mem::take(&mut self.batches);
         let mut end = None;
-        for batch in &mut batches {
-            self.visited += batch.visited;
-            self.transitions += batch.transitions;
-            for hit in &batch.hits {
+        for ChunkPlace { batch, chunk } in in_order(&batches) {
+            let batch = &mut batches[batch];
+            let (visited, transitions) = batch.work(chunk);
+            self.visited += visited;
+            self.transitions += transitions;
+            for hit in batch.hits(chunk) {
                 self.hit(hit);
             }
             if end.is_none() {
-                end = self.absorb(batch, first);
+                end = self.absorb(batch, chunk, first);
             }
-            if let Some((error, path)) = batch.fault.take()
+            if let Some((error, path)) = batch.take_fault(chunk)
                 && !self.decided()
             {
                 return Err(self.fault(error, path));
@@ -288,25 +292,25 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         }
     }
 
-    fn absorb(&mut self, batch: &ExpansionBatch<N>, first: u32) -> Option<SearchCutoff> {
+    fn absorb(&mut self, batch: &ExpansionBatch<N>, chunk: usize, first: u32) -> Option<SearchCutoff> {
         let simulates = self.options.subsumption == SubsumptionRelation::Simulation;
         let worker = self.crew.first();
-        for item in &batch.items {
+        for number in batch.items(chunk) {
+            let item = batch.item(number);
             if simulates && item.parent != NIL && self.store.nodes[item.parent as usize].covered {
                 continue;
             }
             let arrival = self.latest.map_or(0, |_| {
-                let least: i64 = batch.zone(item)[item.dim - 1].into();
+                let least: i64 = batch.zone(item, &self.store)[item.dim as usize - 1].into();
                 -least
             });
             if self.latest.is_some_and(|latest| arrival > latest) {
                 continue;
             }
-            let packed = batch.packed(item, self.store.layout.words);
-            let zone = batch.zone(item);
+            let packed = batch.packed(number, self.store.layout.words);
             let known =
                 if item.discrete == NIL { self.store.find(item.hash, packed) } else { Some(item.discrete) };
-            let ranks = batch.ranks(item, self.counters.len());
+            let ranks = batch.ranks(number, self.counters.len());
             let mut lost = false;
             let discrete = match known {
                 None => self.store.add_discrete(item.hash, packed),
@@ -317,7 +321,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
                         &self.options,
                         d,
                         first,
-                        (zone, item.dim),
+                        (batch.zone(item, &self.store), item.dim as usize),
                         (item.parent, ranks),
                     ) else {
                         continue;
@@ -335,9 +339,10 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             if lost {
                 self.store.unlink(discrete);
             }
-            if self.store.nodes.len() >= self.options.budget.states || !self.store.has_room(zone.len()) {
+            if self.store.nodes.len() >= self.options.budget.states || !self.store.has_room(item.entries()) {
                 return Some(SearchCutoff::States);
             }
+            let zone = batch.intern(item, &mut self.store);
             let id = self.store.add(item.parent, item.via, discrete, zone, ranks);
             self.waiting.push(id, lost, item.level, arrival);
         }
@@ -391,8 +396,8 @@ impl<N: DbmNumber> RoundSearch for ZoneGraphSearch<'_, '_, N> {
         found: &mut Vec<ProbeFinding>,
     ) -> Result<ControlFlow<Option<SearchCutoff>>, SearchError> {
         let end = self.next_round(self.go_on.unwrap_or(&|_| true))?;
-        for batch in &mut self.batches {
-            found.append(&mut batch.findings);
+        for place in in_order(&self.batches) {
+            found.extend_from_slice(self.batches[place.batch].findings(place.chunk));
         }
         Ok(end)
     }

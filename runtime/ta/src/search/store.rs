@@ -170,7 +170,20 @@ impl<N: DbmNumber> PassedList<N> {
     }
 
     pub(crate) fn zone(&self, node: &SymbolicNode, dim: usize) -> &[N] {
-        &self.zones[node.zone as usize..node.zone as usize + dim * dim]
+        self.zone_at(node.zone, dim * dim)
+    }
+
+    /// The zone of so many entries that begins there.
+    pub(crate) fn zone_at(&self, place: u32, size: usize) -> &[N] {
+        &self.zones[place as usize..place as usize + size]
+    }
+
+    /// Where the zone of this hash is, if it is stored.
+    pub(crate) fn find_zone(&self, zone: &[N], hash: u64) -> Option<u32> {
+        let known = self
+            .places
+            .find(hash, |&(at, len)| len as usize == zone.len() && self.zone_at(at, zone.len()) == zone);
+        known.map(|&(at, _)| at)
     }
 
     pub(crate) fn find(&self, hash: u64, packed: &[u64]) -> Option<u32> {
@@ -192,19 +205,17 @@ impl<N: DbmNumber> PassedList<N> {
         n
     }
 
-    /// Where the zone is, which is added if it is not there.
-    fn intern(&mut self, zone: &[N]) -> u32 {
-        let hash = hash_zone(zone);
-        let (zones, len) = (&self.zones, zone.len() as u32);
-        let at = |at: u32, len: u32| &zones[at as usize..(at + len) as usize];
-        if let Some(&(known, _)) = self.places.find(hash, |&(a, l)| l == len && at(a, l) == zone) {
+    /// Where the zone of this hash is, which is added if it is not there.
+    pub(crate) fn intern(&mut self, zone: &[N], hash: u64) -> u32 {
+        if let Some(known) = self.find_zone(zone, hash) {
             return known;
         }
         let place = self.zones.len() as u32;
         self.zones.extend_from_slice(zone);
         let zones = &self.zones;
-        self.places
-            .insert_unique(hash, (place, len), |&(a, l)| hash_zone(&zones[a as usize..(a + l) as usize]));
+        self.places.insert_unique(hash, (place, zone.len() as u32), |&(a, l)| {
+            hash_zone(&zones[a as usize..(a + l) as usize])
+        });
         place
     }
 
@@ -213,13 +224,13 @@ impl<N: DbmNumber> PassedList<N> {
         self.zones.len() + entries < NIL as usize && self.nodes.len() + 1 < NIL as usize
     }
 
-    pub(crate) fn add(&mut self, parent: u32, via: u32, discrete: u32, zone: &[N], ranks: &[u32]) -> u32 {
+    /// A node with an interned zone.
+    pub(crate) fn add(&mut self, parent: u32, via: u32, discrete: u32, zone: u32, ranks: &[u32]) -> u32 {
         self.ranks.extend_from_slice(ranks);
         if let Some(lengths) = &mut self.lengths {
             let before = (parent != NIL).then(|| lengths[parent as usize]);
             lengths.push(before.map_or(0, |n| n + 1));
         }
-        let zone = self.intern(zone);
         let id = self.nodes.len() as u32;
         let next = std::mem::replace(&mut self.heads[discrete as usize], id);
         self.nodes.push(SymbolicNode { parent, via, discrete, zone, next, covered: false });
@@ -300,7 +311,14 @@ mod tests {
     fn a_chain_loses_what_is_covered() {
         let mut store = PassedList::<i16>::new(StateLayout::new(&[(0, 3)], &[true]), 0, false);
         let d = store.add_discrete(hash_words(&[2]), &[2]);
-        let ids: Vec<u32> = (0..4).map(|k| store.add(NIL, 0, d, &[k], &[])).collect();
+        let mut add = |k: i16| {
+            let zone = store.intern(&[k], hash_zone(&[k]));
+            store.add(NIL, 0, d, zone, &[])
+        };
+        let ids: Vec<u32> = (0..4).map(&mut add).collect();
+        // The same zone is kept once.
+        let again = add(2);
+        store.cover(again);
         store.cover(ids[3]);
         store.cover(ids[1]);
         store.unlink(d);
@@ -308,8 +326,6 @@ mod tests {
         assert_eq!(store.head(d), ids[2]);
         assert_eq!(store.nodes[ids[2] as usize].next, ids[0]);
         assert_eq!(store.nodes[ids[0] as usize].next, NIL);
-        // The same zone is kept once.
-        let again = store.add(NIL, 0, d, &[2], &[]);
         assert_eq!(store.nodes[again as usize].zone, store.nodes[ids[2] as usize].zone);
     }
 }
