@@ -3,6 +3,8 @@
 //! `cargo bench -p hrdsl-ta --bench families -- [NAME] [--size N] [--threads N] [--common-time] [--reference]
 //! [--order breadth|depth|topological] [--skip-committed] [--tchecker PATH] [--examples FOLDER]`
 //!
+//! `cargo bench -p hrdsl-ta --bench families -- --speedup [--threads N]`: the wall clock with one thread and with two, or N.
+//!
 //! Each row is a process of its own, so that its seconds (user and system, of all threads) and its memory (the most that was
 //! resident) are those of the whole process, like TChecker's. TChecker's figures are read from `benches/tchecker.csv`, unless
 //! `--tchecker` names a `tck-reach`, or one is on the PATH, and `--examples` TChecker's folder of that name: then its generators
@@ -12,6 +14,8 @@
 mod common;
 #[path = "families/peer.rs"]
 mod peer;
+#[path = "families/speedup.rs"]
+mod speedup;
 
 use std::process::ExitCode;
 
@@ -201,6 +205,17 @@ fn main() -> ExitCode {
                 print_one(&report);
                 ExitCode::SUCCESS
             }
+            Err(why) => {
+                eprintln!("{why}");
+                ExitCode::FAILURE
+            }
+        };
+    }
+    if args.has("--speedup") {
+        let me = std::env::current_exe().map_err(|e| e.to_string());
+        let threads = args.options().threads.max(2);
+        return match me.and_then(|me| speedup::print(&me, threads)) {
+            Ok(()) => ExitCode::SUCCESS,
             Err(why) => {
                 eprintln!("{why}");
                 ExitCode::FAILURE
