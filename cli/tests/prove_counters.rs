@@ -80,10 +80,13 @@ fn queries_of_all_kinds_leave_out_what_nobody_reads() {
         query slow of net = Robot.going --> Robot.done\n";
     let text = format!("{}{more}", LAPS.replace("laps: 0..7", "laps: 0..100000"));
     let folder = folder(&[("laps.hri", text.as_str())]);
-    let out = hrdsl_in(folder.path(), "prove laps.hri --json --budget-states 30");
+    let out = hrdsl_in(folder.path(), "prove laps.hri --json --explain --budget-states 30");
     expect_code(&out, 4);
     let all: Value = serde_json::from_slice(&out.stdout).unwrap();
-    assert_eq!(row(&all, "queries", "stuck")["verdict"], "satisfied");
+    let stuck = row(&all, "queries", "stuck");
+    assert_eq!(stuck["verdict"], "satisfied");
+    let remark = stuck["remark"].as_str().unwrap();
+    assert!(remark.contains("searched with one time for all automata: deadlocks, bounds"), "{remark}");
     assert_eq!(row(&all, "queries", "fastest")["bounds"], serde_json::json!(["3"]));
     // The loop that shows it raises the count with each round, and more rounds than are looked at lead to its end.
     let slow = row(&all, "queries", "slow");

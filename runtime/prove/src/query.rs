@@ -40,8 +40,8 @@ pub struct QueryResult {
 pub struct RangeResult {
     /// The first of them, by slot of the network.
     pub slot: usize,
-    /// Their names, joined.
-    pub variables: String,
+    /// Their names: more than one if they are computed from each other.
+    pub variables: Vec<String>,
     pub found: RangeVerdict,
     /// To the fault.
     pub run: Option<Box<ObservedRun>>,
@@ -90,7 +90,11 @@ pub fn answer(
     let result = match reachability(&asked.ask) {
         Some(goal) => by_search(&plain, &[(query, goal)], settings, watch).map(|mut all| all.remove(0)),
         None => in_general(&plain, asked, settings, watch, ranges)
-            .map(|(answer, ranges)| QueryResult { ranges, ..told(&plain, query, &asked.ask, answer) }),
+            .map(|(answer, ranges)| QueryResult { ranges, ..told(&plain, query, &asked.ask, answer) })
+            .map(|mut result| {
+                result.notes.extend(settings.explanation_in_general());
+                result
+            }),
     };
     match result {
         Ok(answered) => Ok(answered),
@@ -234,7 +238,7 @@ fn range_result(plain: &ObservedNetwork, answer: RangeAnswer, watch: &SearchWatc
     };
     RangeResult {
         slot: answer.slot,
-        variables: answer.variables.join(", "),
+        variables: answer.variables,
         found,
         run: run.map(|witness| Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),
         statistics: answer.statistics,

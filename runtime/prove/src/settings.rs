@@ -182,6 +182,13 @@ impl ProofOptions {
         Some(format!("searched with {time}; {order}; committed states {committed}; threads: {threads}"))
     }
 
+    /// How what reachability alone does not decide was searched, and why so.
+    pub(crate) fn explanation_in_general(&self) -> Option<String> {
+        let why = "deadlocks, bounds and what holds along runs are not decided by zones of local times";
+        let threads = self.threads;
+        self.explain.then(|| format!("searched with one time for all automata: {why}; threads: {threads}"))
+    }
+
     pub(super) fn timing(&self) -> ScheduleOptions {
         ScheduleOptions { delays: self.delays, seed: self.seed, prompt: false }
     }

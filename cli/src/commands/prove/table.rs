@@ -174,9 +174,9 @@ impl ProofRow {
         Self {
             network: String::new(),
             kind: PropertyKind::Range,
-            name: range.variables.clone(),
+            name: range.variables.join(", "),
             title: String::new(),
-            text: "read by nothing that is asked here: stays in its range".to_owned(),
+            text: "left out where nothing reads it: stays in its range".to_owned(),
             verdict,
             remark: (!remarks.is_empty()).then(|| remarks.join("; ")),
             bounds: Vec::new(),
