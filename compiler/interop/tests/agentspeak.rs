@@ -171,14 +171,34 @@ fn types_come_from_where_values_meet() {
 
 #[test]
 fn what_does_not_fit_is_left_out_alone() {
-    let imported = from_text("b(1).\nb(x).\n!g.\n+!g : b(N) & N > 0 <- +b(\"t\"); .print(N).\n");
+    let imported =
+        from_text("b(1).\nb(N) :- b(s(N)).\n!g.\n+!g : b(N) & N > 0 <- .length(N, \"t\"); .print(N).\n");
     assert_eq!(
         messages(&imported, NoteSeverity::LeftOut),
-        ["a number meets an atom (`x`)", "a number meets a string"]
+        [
+            "a value would contain others of its own type, to any depth: it has no fixed number of parts",
+            "a number meets a string"
+        ]
     );
     assert!(imported.text.contains(".print(N)") && imported.text.contains("belief b(n: int) = b(1)"));
     let places: Vec<(u32, u32)> = imported.notes.iter().map(|n| (n.line, n.column)).collect();
     assert!(places.contains(&(2, 1)) && places.contains(&(4, 23)), "{places:?}");
+}
+
+#[test]
+fn values_of_several_types_are_a_tag_and_parts() {
+    let imported = from_text("b(1).\nb(x).\n!g.\n+!g : b(N) & N > 0 <- +b(\"t\"); .print(N).\n");
+    assert_eq!(messages(&imported, NoteSeverity::LeftOut), Vec::<&str>::new());
+    assert!(
+        imported.text.contains("b(BTag.number, 1, x, \"\"), b(BTag.atom, 0, x, \"\")"),
+        "{}",
+        imported.text
+    );
+    let listed = from_text("b(1).\nb(x).\n!g.\n+!g <- .findall(X, b(X), L); .print(L).\n");
+    assert_eq!(
+        messages(&listed, NoteSeverity::LeftOut),
+        ["a list of values of several types cannot be printed"]
+    );
 }
 
 #[test]

@@ -46,6 +46,7 @@ pub fn infer(system: &AgentSpeakSystem) -> InferenceOutcome {
         // What is open to the end concerns no declared place, or else it is said where it is written.
         walk.left_out.entry(Span::default()).or_insert(clash);
     }
+    walk.types.settle_decimals();
     InferenceOutcome { types: walk.types, left_out: walk.left_out }
 }
 
@@ -172,7 +173,7 @@ impl TypeInferrer {
             _ => self.term(arg)?,
         };
         self.types.record(arg.span, id)?;
-        self.types.unify(place, id)
+        self.types.meet(place, id)
     }
 
     /// `+X`: a variable that holds a structure stands for the belief of that name.
@@ -219,7 +220,7 @@ impl TypeInferrer {
             let none = (String::new(), 0);
             let place = self.types.annotation(belief.unwrap_or(&none), name);
             let id = self.term(value)?;
-            self.types.unify(place, id)?;
+            self.types.demand(id, place)?;
         }
         Ok(())
     }
@@ -259,14 +260,29 @@ impl TypeInferrer {
             }
             AgentSpeakFormula::Relation { op, left, right } => {
                 let (l, r) = (self.term(left)?, self.term(right)?);
-                self.types.unify(l, r)?;
                 if op.sort() == AgentSpeakOperatorSort::Order {
-                    let number = self.types.number(false);
-                    self.types.unify(l, number)?;
+                    self.ordered(l, r)
+                } else {
+                    self.types.unify(l, r)
                 }
-                Ok(())
             }
         }
+    }
+
+    /// Numbers are compared with each other, and values of several types with both.
+    fn ordered(&mut self, left: TyId, right: TyId) -> Result<(), OmissionReason> {
+        let number = self.types.number(false);
+        if [left, right].iter().all(|id| self.types.alternatives(*id).is_none()) {
+            self.types.meet(left, right)?;
+            return self.types.meet(left, number);
+        }
+        for id in [left, right] {
+            if self.types.alternatives(id).is_none() {
+                self.types.meet(id, number)?;
+            }
+        }
+        self.types.decimals.push((left, right));
+        Ok(())
     }
 
     /// The class of a term.
@@ -300,15 +316,15 @@ impl TypeInferrer {
                 let list = self.types.add(AgentSpeakType::List(element));
                 if let Some(rest) = rest {
                     let id = self.term(rest)?;
-                    self.types.unify(list, id)?;
+                    self.types.demand(id, list)?;
                 }
                 list
             }
             TermKind::Neg(inner) => {
                 let number = self.types.number(false);
                 let id = self.term(inner)?;
-                self.types.unify(id, number)?;
-                id
+                self.types.demand(id, number)?;
+                if self.types.alternatives(id).is_some() { number } else { id }
             }
             TermKind::Binary { op, left, right } if op.is_arithmetic() => {
                 self.arithmetic(*op, left, right)?
@@ -339,7 +355,7 @@ impl TypeInferrer {
         for side in [left, right] {
             let id = self.term(side)?;
             let expected = if has_decimals { self.types.number(false) } else { number };
-            self.types.unify(expected, id)?;
+            self.types.demand(id, expected)?;
         }
         Ok(number)
     }

@@ -70,7 +70,9 @@ pub fn infer(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result<(), Omis
             }
             places.iter().try_for_each(|p| number(walk, p))
         }
-        (".number" | ".string" | ".list" | ".atom" | ".ground", [term]) => walk.term(term).map(|_| ()),
+        (".number" | ".string" | ".list" | ".atom" | ".structure" | ".literal" | ".ground", [term]) => {
+            walk.term(term).map(|_| ())
+        }
         (".empty", [list]) => walk.term(list).map(|_| ()),
         (".term2string", [value, text]) => {
             walk.term(value)?;
@@ -171,7 +173,7 @@ fn list_of(walk: &mut TypeInferrer, list: &AgentSpeakTerm, element: TyId) -> Res
 
 fn same(walk: &mut TypeInferrer, of: &AgentSpeakTerm, expected: TyId) -> Result<(), OmissionReason> {
     let id = walk.term(of)?;
-    walk.types.unify(expected, id)
+    walk.types.demand(id, expected)
 }
 
 fn in_list(
@@ -210,7 +212,7 @@ fn sent(walk: &mut TypeInferrer, message: &AgentSpeakMessage<'_>) -> Result<(), 
                 if matches!(walk.types.get(id), AgentSpeakType::List(_)) {
                     expected = walk.types.add(AgentSpeakType::List(expected));
                 }
-                walk.types.unify(id, expected)?;
+                walk.types.demand(id, expected)?;
             }
         }
     }

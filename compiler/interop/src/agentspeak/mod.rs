@@ -10,6 +10,7 @@
 //!
 //! [`import`] does them all.
 
+mod alternatives;
 mod ast;
 mod infer;
 mod internal;
@@ -21,6 +22,7 @@ mod quirks;
 mod read;
 mod survey;
 mod system;
+mod tags;
 mod term;
 mod texts;
 mod types;

@@ -9,6 +9,7 @@ use super::{
     ast::PredicateIndicator,
     survey::{OccurrenceKind, PredicateKind, PredicateOccurrence, PredicateSurvey},
     system::AgentSpeakSystem,
+    tags::AlternativeTags,
     texts::{TextEnumeration, is_text, texts},
     types::{AgentSpeakType, ListLeafType, TyId, UnificationTable},
 };
@@ -38,6 +39,8 @@ pub struct AgentSpeakNames {
     pub enums: Vec<AtomEnumeration>,
     /// By class: the strings that are arguments of actions.
     pub texts: IndexMap<TyId, TextEnumeration>,
+    /// The tags of values of several types.
+    pub tags: AlternativeTags,
     /// Which enumeration the values of a class are of, by its root.
     of: IndexMap<TyId, usize>,
     /// Values that are written with their enumeration.
@@ -138,6 +141,8 @@ impl AgentSpeakNames {
         }
         names.name_actions(system, types, surveys);
         names.name_enums(types, surveys);
+        let used = names.enums.iter().map(|e| e.name.clone()).collect();
+        names.tags = AlternativeTags::new(&places(types, surveys), types, used);
         names.texts = texts(system, types, surveys, &names);
         names
     }
@@ -236,6 +241,9 @@ impl AgentSpeakNames {
             AgentSpeakType::Atoms { .. } => {
                 self.of.get(&leaf.of).map_or_else(|| "agent".to_owned(), |i| self.enums[*i].name.clone())
             }
+            AgentSpeakType::Union(_) => {
+                self.tags.enumeration(leaf.of).map_or_else(|| "int".to_owned(), |e| e.name.clone())
+            }
             AgentSpeakType::Number { float: false }
             | AgentSpeakType::Unknown
             | AgentSpeakType::List(_)
@@ -253,6 +261,7 @@ impl AgentSpeakNames {
     pub fn is_value(&self, name: &str) -> bool {
         self.agents.values().any(|a| a == name)
             || self.enums.iter().any(|e| e.values.values().any(|v| v == name))
+            || self.tags.enums.iter().any(|e| e.values.contains(name))
             || self.texts.values().any(|e| e.other == name || e.values.values().any(|v| v == name))
     }
 }

@@ -50,6 +50,7 @@ pub fn texts(
 ) -> IndexMap<TyId, TextEnumeration> {
     let (mut all, mut enums) = (IndexMap::new(), IndexSet::new());
     enums.extend(names.enums.iter().map(|e| e.name.clone()));
+    enums.extend(names.tags.enums.iter().map(|e| e.name.clone()));
     let computed = computed(system, types);
     for (key, places) in &types.actions {
         for (i, place) in places.iter().enumerate() {

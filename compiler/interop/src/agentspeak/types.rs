@@ -24,6 +24,8 @@ pub enum AgentSpeakType {
     },
     List(TyId),
     Struct(String, Vec<TyId>),
+    /// Values of several types: the classes of those, each of another sort.
+    Union(Vec<TyId>),
 }
 
 #[derive(Clone, Debug)]
@@ -53,12 +55,15 @@ pub struct UnificationTable {
     pub agents: IndexSet<String>,
     /// `.concat` of what is not known yet: its arguments, its result.
     pub concats: Vec<(Vec<TyId>, TyId)>,
+    /// Pairs of classes whose numbers have decimals if those of the other have.
+    pub(super) decimals: Vec<(TyId, TyId)>,
 }
 
 /// A state to go back to: how much there was of everything.
 pub struct UnificationSnapshot {
     nodes: usize,
     places: [usize; 5],
+    decimals: usize,
     concats: Vec<(Vec<TyId>, TyId)>,
 }
 
@@ -73,7 +78,12 @@ impl UnificationTable {
             self.annotations.len(),
             self.terms.len(),
         ];
-        UnificationSnapshot { nodes: self.nodes.len(), places, concats: self.concats.clone() }
+        UnificationSnapshot {
+            nodes: self.nodes.len(),
+            places,
+            decimals: self.decimals.len(),
+            concats: self.concats.clone(),
+        }
     }
 
     /// Goes back to how things were at the last mark.
@@ -88,6 +98,7 @@ impl UnificationTable {
         self.actions.truncate(actions);
         self.annotations.truncate(annotations);
         self.terms.truncate(terms);
+        self.decimals.truncate(mark.decimals);
         self.concats = mark.concats;
     }
 
@@ -188,7 +199,10 @@ impl UnificationTable {
             return Ok(());
         }
         let (left, right) = (self.get(a).clone(), self.get(b).clone());
-        let clash = format!("{} meets {}", self.describe(a), self.describe(b));
+        let is_known = left != AgentSpeakType::Unknown && right != AgentSpeakType::Unknown;
+        if is_known && self.differ(a, b) {
+            return self.join(a, b);
+        }
         let (ty, pairs) = match (left, right) {
             (AgentSpeakType::Unknown, ty) | (ty, AgentSpeakType::Unknown) => (ty, Vec::new()),
             (AgentSpeakType::Number { float: x }, AgentSpeakType::Number { float: y }) => {
@@ -205,7 +219,7 @@ impl UnificationTable {
                 (AgentSpeakType::Atoms { names: all, agent }, Vec::new())
             }
             (AgentSpeakType::List(x), AgentSpeakType::List(y)) => (AgentSpeakType::List(x), vec![(x, y)]),
-            (AgentSpeakType::Struct(f, x), AgentSpeakType::Struct(g, y)) if f == g && x.len() == y.len() => {
+            (AgentSpeakType::Struct(f, x), AgentSpeakType::Struct(_, y)) => {
                 let pairs = x.iter().copied().zip(y).collect();
                 (AgentSpeakType::Struct(f, x), pairs)
             }
@@ -215,16 +229,32 @@ impl UnificationTable {
                 | AgentSpeakType::Bool
                 | AgentSpeakType::Atoms { .. }
                 | AgentSpeakType::List(_)
-                | AgentSpeakType::Struct(..),
+                | AgentSpeakType::Struct(..)
+                | AgentSpeakType::Union(_),
                 _,
-            ) => return Err(clash),
+            ) => return self.join(a, b),
         };
+        self.replace(a, b, ty)?;
+        pairs.into_iter().try_for_each(|(x, y)| self.unify(x, y))
+    }
+
+    /// Makes two classes one of that type.
+    pub(super) fn replace(&mut self, a: TyId, b: TyId, ty: AgentSpeakType) -> Result<(), TypeClash> {
         if self.contains(&ty, a) || self.contains(&ty, b) {
-            return Err("a value would contain itself".to_owned());
+            return Err(
+                "a value would contain others of its own type, to any depth: it has no fixed number of parts"
+                    .to_owned(),
+            );
         }
         self.set(a, UnificationNode::Root(ty));
         self.set(b, UnificationNode::Same(a));
-        pairs.into_iter().try_for_each(|(x, y)| self.unify(x, y))
+        Ok(())
+    }
+
+    /// Numbers of a class have decimals.
+    pub(super) fn give_decimals(&mut self, id: TyId) {
+        let root = self.root(id);
+        self.set(root, UnificationNode::Root(AgentSpeakType::Number { float: true }));
     }
 
     /// Whether a class is within a type.
@@ -232,7 +262,7 @@ impl UnificationTable {
         let within = |inner: &TyId| self.root(*inner) == id || self.contains(self.get(*inner), id);
         match ty {
             AgentSpeakType::List(of) => within(of),
-            AgentSpeakType::Struct(_, args) => args.iter().any(within),
+            AgentSpeakType::Struct(_, args) | AgentSpeakType::Union(args) => args.iter().any(within),
             AgentSpeakType::Unknown
             | AgentSpeakType::Number { .. }
             | AgentSpeakType::Text
@@ -266,14 +296,19 @@ impl UnificationTable {
             },
             AgentSpeakType::List(_) => "a list".to_owned(),
             AgentSpeakType::Struct(functor, args) => format!("a structure (`{functor}/{}`)", args.len()),
+            AgentSpeakType::Union(_) => "values of several types".to_owned(),
         }
     }
 
-    /// The single values of which a value of the class consists: those of a structure one by one; a list of structures is
-    /// as many lists.
+    /// The single values of which a value of the class consists: those of a structure one by one; of several types,
+    /// the tag and those of each alternative. A list of such values is as many lists.
     pub fn leaves(&self, id: TyId) -> Vec<ListLeafType> {
         match self.get(id) {
             AgentSpeakType::Struct(_, args) => args.iter().flat_map(|a| self.leaves(*a)).collect(),
+            AgentSpeakType::Union(all) => {
+                let tag = ListLeafType { lists: 0, of: self.root(id) };
+                std::iter::once(tag).chain(all.iter().flat_map(|a| self.leaves(*a))).collect()
+            }
             AgentSpeakType::List(of) => {
                 self.leaves(*of).into_iter().map(|l| ListLeafType { lists: l.lists + 1, of: l.of }).collect()
             }
@@ -295,7 +330,7 @@ impl UnificationTable {
     /// Whether values of the class are taken apart.
     pub fn is_compound(&self, id: TyId) -> bool {
         match self.get(id) {
-            AgentSpeakType::Struct(..) => true,
+            AgentSpeakType::Struct(..) | AgentSpeakType::Union(_) => true,
             AgentSpeakType::List(of) => self.is_compound(*of),
             AgentSpeakType::Unknown
             | AgentSpeakType::Number { .. }
@@ -313,11 +348,11 @@ impl UnificationTable {
             };
             if any(self, |t| *t == AgentSpeakType::Text) {
                 let text = self.add(AgentSpeakType::Text);
-                self.unify(result, text)?;
+                self.demand(result, text)?;
             } else if finally || any(self, |t| matches!(t, AgentSpeakType::List(_))) {
                 let of = self.fresh();
                 let list = self.add(AgentSpeakType::List(of));
-                args.iter().chain([&result]).try_for_each(|a| self.unify(*a, list))?;
+                args.iter().chain([&result]).try_for_each(|a| self.demand(*a, list))?;
             } else {
                 self.concats.push((args, result));
             }

@@ -4,12 +4,16 @@ use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
 use super::{
-    clause::{BindingMode, ClauseContext, ClauseFailure, ClauseResult, ClauseTranslator, PredicateUsage},
+    clause::{
+        ATOM, BindingMode, ClauseContext, ClauseFailure, ClauseFragment, ClauseResult, ClauseTranslator,
+        PredicateUsage,
+    },
     modes::TranslatedRules,
     steps::block,
     wanted::WantedArguments,
 };
 use crate::agentspeak::{
+    alternatives::AlternativeSort,
     ast::{
         AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakPlan, AgentSpeakProgram,
         AgentSpeakTerm, AgentSpeakTriggerKind, PredicateIndicator, TermKind,
@@ -269,18 +273,27 @@ fn head(clause: &mut ClauseTranslator<'_>, plan: &AgentSpeakPlan) -> ClauseResul
             clause.values(arg, BindingMode::Pattern)?;
         }
         for annotation in &of.annotations {
-            if let Some((_, value)) = valued(annotation) {
-                clause.values(value, BindingMode::Pattern)?;
+            if let Some((name, value)) = valued(annotation) {
+                if name == "source" {
+                    clause.part(value, BindingMode::Pattern, &AlternativeSort::Atom)?;
+                } else {
+                    clause.values(value, BindingMode::Pattern)?;
+                }
             }
         }
         text
     };
     let sign = plan.trigger.kind.sign();
-    let context = match &plan.context {
-        None => String::new(),
-        Some(context) if matches!(context.kind, TermKind::Bool(true)) => String::new(),
-        Some(context) => format!(" when {}", clause.formula(context).map_err(unbound)?.text),
-    };
+    let first = std::mem::take(&mut clause.first);
+    let mut parts: Vec<ClauseFragment> =
+        first.into_iter().map(|text| ClauseFragment::new(text, ATOM)).collect();
+    if let Some(context) = &plan.context
+        && !matches!(context.kind, TermKind::Bool(true))
+    {
+        parts.push(clause.formula(context).map_err(unbound)?);
+    }
+    let context =
+        if parts.is_empty() { String::new() } else { format!(" when {}", ClauseFragment::all(parts).text) };
     Ok(format!("{sign}{trigger}{context}"))
 }
 

@@ -19,7 +19,7 @@ impl ClauseTranslator<'_> {
         if op == AgentSpeakOperator::Pow {
             return self.power(left, right);
         }
-        let (mut l, mut r) = (self.expr(left)?, self.expr(right)?);
+        let (mut l, mut r) = (self.number(left)?, self.number(right)?);
         if op == AgentSpeakOperator::Div {
             // Whole numbers would be divided without a rest.
             for (piece, of) in [(&mut l, left), (&mut r, right)] {
@@ -58,11 +58,11 @@ impl ClauseTranslator<'_> {
     }
 
     fn power(&mut self, base: &AgentSpeakTerm, exponent: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
-        let base = self.expr(base)?;
+        let base = self.number(base)?;
         if let Some(n) = small_power(exponent) {
             return Ok(ClauseFragment::new(vec![base.at(ATOM); n].join(" * "), PRODUCT));
         }
-        let exponent = self.expr(exponent)?.text;
+        let exponent = self.number(exponent)?.text;
         let power = self.fresh("Power");
         self.first.push(format!(".power({}, {exponent}, {power})", base.text));
         Ok(ClauseFragment::new(power, ATOM))

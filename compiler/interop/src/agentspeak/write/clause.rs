@@ -6,6 +6,7 @@ use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
 use super::super::{
+    alternatives::AlternativeSort,
     ast::{
         AgentSpeakFormula, AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakTerm, PredicateIndicator,
         TermKind, each_term,
@@ -13,7 +14,7 @@ use super::super::{
     names::{AgentSpeakNames, ident, unused, variable},
     system::AgentSpeakSystem,
     term::{OmissionReason, valued},
-    types::{AgentSpeakType, TyId, UnificationTable},
+    types::{TyId, UnificationTable},
 };
 use super::wanted::WantedArguments;
 
@@ -171,7 +172,7 @@ impl<'a> ClauseTranslator<'a> {
         name
     }
 
-    fn var(&mut self, name: &str) -> String {
+    pub(super) fn var(&mut self, name: &str) -> String {
         if let Some(found) = self.vars.get(name) {
             return found.clone();
         }
@@ -194,108 +195,6 @@ impl<'a> ClauseTranslator<'a> {
             _ => {}
         });
         all
-    }
-
-    /// The single values of which a term consists.
-    pub fn values(&mut self, of: &AgentSpeakTerm, want: BindingMode) -> ClauseResult<Vec<String>> {
-        let id = self.type_of(of)?;
-        let types = self.cx.types;
-        match &of.kind {
-            TermKind::Any if want == BindingMode::Value => Err(ClauseFailure::Unbound("_".to_owned())),
-            TermKind::Any => Ok(vec!["_".to_owned(); types.leaves(id).len()]),
-            TermKind::Var { name, .. } => {
-                if !self.bound.contains(name) {
-                    if want == BindingMode::Value {
-                        return Err(ClauseFailure::Unbound(name.clone()));
-                    }
-                    self.bound.insert(name.clone());
-                }
-                let name = self.var(name);
-                let count = types.leaves(id).len();
-                Ok(if count == 1 { vec![name] } else { (1..=count).map(|i| format!("{name}_{i}")).collect() })
-            }
-            TermKind::Literal(l) if matches!(types.get(id), AgentSpeakType::Struct(..)) => {
-                let parts = l.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?;
-                Ok(parts.concat())
-            }
-            TermKind::List { items, rest } => {
-                let items = items.iter().map(|i| self.values(i, want)).collect::<ClauseResult<Vec<_>>>()?;
-                let rest = rest.as_ref().map(|r| self.values(r, want)).transpose()?;
-                let leaf = |k: usize| {
-                    let items: Vec<&str> = items.iter().map(|i| i[k].as_str()).collect();
-                    match &rest {
-                        Some(rest) => format!("[{} | {}]", items.join(", "), rest[k]),
-                        None => format!("[{}]", items.join(", ")),
-                    }
-                };
-                Ok((0..types.leaves(id).len()).map(leaf).collect())
-            }
-            _ => Ok(vec![self.expr(of)?.text]),
-        }
-    }
-
-    /// A term that is a single value.
-    pub fn value(&mut self, of: &AgentSpeakTerm, want: BindingMode) -> ClauseResult<String> {
-        match <[String; 1]>::try_from(self.values(of, want)?) {
-            Ok([one]) => Ok(one),
-            Err(_) => Err("a structure cannot stand here".into()),
-        }
-    }
-
-    /// An expression, whose variables have values.
-    pub fn expr(&mut self, of: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
-        let id = self.type_of(of)?;
-        let float = matches!(self.cx.types.get(id), AgentSpeakType::Number { float: true });
-        let signed = |text: String| {
-            if text.starts_with('-') {
-                ClauseFragment::new(text, SUM)
-            } else {
-                ClauseFragment::new(text, ATOM)
-            }
-        };
-        Ok(match &of.kind {
-            TermKind::Int(n) if float => signed(format!("{n}.0")),
-            TermKind::Int(n) => signed(n.to_string()),
-            TermKind::Float(x) => signed(float_text(*x)),
-            TermKind::Text(text) if matches!(self.cx.types.get(id), AgentSpeakType::Atoms { .. }) => {
-                ClauseFragment::new(self.cx.names.atom(self.cx.types, id, text), ATOM)
-            }
-            TermKind::Text(text) => ClauseFragment::new(quoted(text), ATOM),
-            TermKind::Literal(l) if l.args.is_empty() && *self.cx.types.get(id) == AgentSpeakType::Text => {
-                ClauseFragment::new(quoted(&l.functor), ATOM)
-            }
-            TermKind::Bool(b) => ClauseFragment::new(b.to_string(), ATOM),
-            TermKind::Neg(inner) => ClauseFragment::new(format!("-{}", self.expr(inner)?.at(ATOM)), SUM),
-            TermKind::Literal(l) if l.functor == "math.pi" => {
-                ClauseFragment::new(float_text(std::f64::consts::PI), ATOM)
-            }
-            TermKind::Literal(l) if l.functor == "math.e" => {
-                ClauseFragment::new(float_text(std::f64::consts::E), ATOM)
-            }
-            TermKind::Literal(l) if l.is_internal() && !is_expression(l) => {
-                ClauseFragment::new(self.asked_first(l)?, ATOM)
-            }
-            TermKind::Literal(l) if l.is_internal() => {
-                let args = l.args.iter().map(|a| Ok(self.expr(a)?.text)).collect::<ClauseResult<Vec<_>>>()?;
-                let name = l.functor.trim_start_matches("math.");
-                ClauseFragment::new(format!("{name}({})", args.join(", ")), ATOM)
-            }
-            TermKind::Literal(l) if l.args.is_empty() => {
-                ClauseFragment::new(self.cx.names.atom(self.cx.types, id, &l.functor), ATOM)
-            }
-            TermKind::Binary { op, left, right } if op.is_arithmetic() => {
-                self.arithmetic(*op, left, right, float)?
-            }
-            TermKind::Var { .. } | TermKind::Any | TermKind::List { .. } => {
-                ClauseFragment::new(self.value(of, BindingMode::Value)?, ATOM)
-            }
-            TermKind::Literal(_)
-            | TermKind::Binary { .. }
-            | TermKind::Not(_)
-            | TermKind::Body(_)
-            | TermKind::Trigger(_)
-            | TermKind::Plan => return Err("this is no single value".into()),
-        })
     }
 
     // ── Formulas ──
@@ -382,7 +281,12 @@ impl<'a> ClauseTranslator<'a> {
             if name != "source" {
                 self.used.annotations.insert((key.clone(), name.to_owned()));
             }
-            all.push(format!("{written}({})", self.value(value, want)?));
+            let value = if name == "source" {
+                self.single(value, want, &AlternativeSort::Atom)?
+            } else {
+                self.value(value, want)?
+            };
+            all.push(format!("{written}({value})"));
         }
         Ok(if all.is_empty() { String::new() } else { format!("[{}]", all.join(", ")) })
     }
@@ -404,7 +308,7 @@ impl<'a> ClauseTranslator<'a> {
         for annotation in &of.annotations {
             match valued(annotation) {
                 Some(("source", value)) if want == BindingMode::Pattern => {
-                    source = format!("[source({})]", self.value(value, want)?);
+                    source = format!("[source({})]", self.single(value, want, &AlternativeSort::Atom)?);
                 }
                 Some(("source", _)) => {}
                 Some(("hard_deadline", time)) if want == BindingMode::Value && is_number(time) => {}
@@ -439,7 +343,7 @@ pub fn quoted(text: &str) -> String {
     out + "\""
 }
 
-fn float_text(x: f64) -> String {
+pub(super) fn float_text(x: f64) -> String {
     let text = format!("{x:?}");
     match text.split_once('e') {
         Some((number, exponent)) if !number.contains('.') => format!("{number}.0e{exponent}"),
@@ -449,9 +353,4 @@ fn float_text(x: f64) -> String {
 
 pub(super) fn is_number(of: &AgentSpeakTerm) -> bool {
     matches!(of.kind, TermKind::Int(_) | TermKind::Float(_))
-}
-
-/// Whether an internal function is one of expressions, too.
-fn is_expression(of: &AgentSpeakLiteral) -> bool {
-    matches!((of.functor.as_str(), of.args.len()), ("math.abs", 1) | ("math.min" | "math.max", 2))
 }

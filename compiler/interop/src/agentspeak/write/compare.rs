@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use super::{
     super::{
+        alternatives::AlternativeSort,
         ast::{AgentSpeakOperator, AgentSpeakOperatorSort, AgentSpeakTerm, TermKind},
         term::texts,
     },
@@ -29,9 +30,16 @@ impl ClauseTranslator<'_> {
             AgentSpeakOperator::Different | AgentSpeakOperator::NotUnify => "!=",
             _ => return Err("this is no formula".into()),
         };
+        let id = self.type_of(left)?;
+        let choices =
+            [left, right].map(|t| self.type_of(t).is_ok_and(|id| self.cx.types.alternatives(id).is_some()));
+        if op.sort() == AgentSpeakOperatorSort::Order && choices != [false, false] {
+            return self.ordered(sign, op, [left, right]);
+        }
         let is_empty =
             |t: &AgentSpeakTerm| matches!(&t.kind, TermKind::List { items, rest: None } if items.is_empty());
         if let Some(list) = [(left, right), (right, left)].iter().find(|(_, r)| is_empty(r)).map(|(l, _)| *l)
+            && choices == [false, false]
         {
             let empty =
                 ClauseFragment::new(format!(".empty({})", self.values(list, BindingMode::Value)?[0]), ATOM);
@@ -41,19 +49,75 @@ impl ClauseTranslator<'_> {
                 ClauseFragment::new(format!("not {}", empty.text), NOT)
             });
         }
-        let id = self.type_of(left)?;
         if !self.cx.types.is_compound(id) {
             let (l, r) = (self.expr(left)?, self.expr(right)?);
             return Ok(ClauseFragment::new(format!("{} {sign} {}", l.at(SUM), r.at(SUM)), COMPARE));
         }
         let (l, r) = (self.values(left, BindingMode::Value)?, self.values(right, BindingMode::Value)?);
-        let pairs =
-            l.iter().zip(&r).map(|(l, r)| ClauseFragment::new(format!("{l} {sign} {r}"), COMPARE)).collect();
-        if sign == "==" {
-            return Ok(ClauseFragment::all(pairs));
+        let pairs = l
+            .iter()
+            .zip(&r)
+            .filter(|(l, r)| l != r)
+            .map(|(l, r)| ClauseFragment::new(format!("{l} == {r}"), COMPARE));
+        let same = ClauseFragment::all(pairs.collect());
+        // Of several parts that differ, each would be an answer of its own.
+        Ok(if sign == "==" { same } else { ClauseFragment::new(format!("not ({})", same.text), NOT) })
+    }
+
+    /// Which of two values is less, of which one at least is of several types: numbers come first, then strings, then lists.
+    fn ordered(
+        &mut self,
+        sign: &str,
+        op: AgentSpeakOperator,
+        sides: [&AgentSpeakTerm; 2],
+    ) -> ClauseResult<ClauseFragment> {
+        let (left, right) = (self.alternatives_of(sides[0])?, self.alternatives_of(sides[1])?);
+        let mut cases = Vec::new();
+        for (a, a_tag, x) in &left {
+            for (b, b_tag, y) in &right {
+                let mut parts: Vec<ClauseFragment> = [a_tag, b_tag]
+                    .into_iter()
+                    .flatten()
+                    .map(|t| ClauseFragment::new(t.clone(), COMPARE))
+                    .collect();
+                if a.rank() != b.rank() {
+                    if holds(op, a.rank().cmp(&b.rank())) == Some(true) {
+                        cases.push(ClauseFragment::all(parts));
+                    }
+                } else if let (AlternativeSort::Number, AlternativeSort::Number) = (a, b) {
+                    parts.push(ClauseFragment::new(format!("{x} {sign} {y}"), COMPARE));
+                    cases.push(ClauseFragment::all(parts));
+                } else {
+                    return Err("which of two values that are no numbers is less is not known".into());
+                }
+            }
         }
-        let pairs: Vec<String> = pairs.into_iter().map(|p: ClauseFragment| p.text).collect();
-        Ok(ClauseFragment::new(pairs.join(" || "), OR))
+        let cases: Vec<String> = cases.into_iter().map(|c| c.at(COMPARE)).collect();
+        Ok(if cases.is_empty() {
+            ClauseFragment::new("false", ATOM)
+        } else {
+            ClauseFragment::new(cases.join(" || "), OR)
+        })
+    }
+
+    /// Of which sorts a term may be, each with the test of its tag and the number that it is then.
+    fn alternatives_of(
+        &mut self,
+        of: &AgentSpeakTerm,
+    ) -> ClauseResult<Vec<(AlternativeSort, Option<String>, String)>> {
+        let (types, id) = (self.cx.types, self.type_of(of)?);
+        let Some(all) = types.alternatives(id).filter(|_| self.own_alternative(of, id).is_none()) else {
+            let text = self.expr(of)?.at(SUM);
+            return Ok(vec![(AlternativeSort::Number, None, text)]);
+        };
+        let values = self.values(of, BindingMode::Value)?;
+        let (mut found, mut at) = (Vec::new(), 1);
+        for (i, own) in all.iter().enumerate() {
+            let tag = format!("{} == {}", values[0], self.cx.names.tag(types, id, i));
+            found.extend(types.get(*own).sort().map(|sort| (sort, Some(tag), values[at].clone())));
+            at += types.leaves(*own).len();
+        }
+        Ok(found)
     }
 
     /// A comparison of which the outcome is known: of two texts, or of a variable without a value, which stands above every

@@ -19,6 +19,7 @@ impl ClauseTranslator<'_> {
                 (".count".to_owned(), text?, "Count")
             }
             (".length" | "math.length", [list]) => {
+                self.no_choice(list)?;
                 (".length".to_owned(), self.values(list, BindingMode::Value)?[0].clone(), "Length")
             }
             ("math.min", [list]) => (".min".to_owned(), self.value(list, BindingMode::Value)?, "Least"),
@@ -26,8 +27,11 @@ impl ClauseTranslator<'_> {
             ("math.random", args) => return self.random(args),
             (name, [arg]) => {
                 let f = real_function(name).ok_or("this is no single value")?;
-                let arg =
-                    if f.is_of_list() { self.value(arg, BindingMode::Value)? } else { self.expr(arg)?.text };
+                let arg = if f.is_of_list() {
+                    self.value(arg, BindingMode::Value)?
+                } else {
+                    self.number(arg)?.text
+                };
                 (format!(".{}", f.name()), arg, "Number")
             }
             _ => return Err("this is no single value".into()),

@@ -4,6 +4,7 @@ use hrdsl_source::Span;
 
 use super::{
     super::{
+        alternatives::AlternativeSort,
         ast::{AgentSpeakLiteral, AgentSpeakTerm, TermKind},
         term::{AgentSpeakMessage, atom, literal, message, performative},
     },
@@ -25,25 +26,32 @@ impl ClauseTranslator<'_> {
                 let before = self.bound.clone();
                 let formula = self.formula(formula);
                 self.bound = before;
-                format!(".count({}, {})", formula?.text, self.value(n, BindingMode::Pattern)?)
+                format!(
+                    ".count({}, {})",
+                    formula?.text,
+                    self.single(n, BindingMode::Pattern, &AlternativeSort::Number)?
+                )
             }
             (".member", [element, list]) => return self.member(element, list),
             (".nth", [index, list, element]) => {
-                let index = self.expr(index)?.text;
-                let lists = self.values(list, BindingMode::Value)?;
+                let index = self.number(index)?.text;
+                let lists = self.part(list, BindingMode::Value, &AlternativeSort::List)?;
                 let elements = self.values(element, BindingMode::Pattern)?;
                 let each = lists.iter().zip(&elements).map(|(l, e)| format!(".nth({index}, {l}, {e})"));
                 return Ok(ClauseFragment::all(each.map(|t| ClauseFragment::new(t, ATOM)).collect()));
             }
             (".min" | ".max", [list, element]) => return self.extreme(name, list, element),
             (".length", [list, n]) => {
+                self.no_choice(list)?;
                 format!(
                     ".length({}, {})",
                     self.values(list, BindingMode::Value)?[0],
-                    self.value(n, BindingMode::Pattern)?
+                    self.single(n, BindingMode::Pattern, &AlternativeSort::Number)?
                 )
             }
-            (".empty", [list]) => format!(".empty({})", self.values(list, BindingMode::Value)?[0]),
+            (".empty", [list]) if self.no_choice(list).is_ok() => {
+                format!(".empty({})", self.values(list, BindingMode::Value)?[0])
+            }
             (".concat", [args @ .., result]) => return self.componentwise(name, args, result),
             (".reverse", [list, result]) => {
                 return self.componentwise(name, std::slice::from_ref(list), result);
@@ -52,7 +60,7 @@ impl ClauseTranslator<'_> {
                 format!(".string({}, {})", self.expr(value)?.text, self.value(result, BindingMode::Pattern)?)
             }
             (".range", [x, lo, hi]) => {
-                let (lo, hi) = (self.expr(lo)?.text, self.expr(hi)?.text);
+                let (lo, hi) = (self.number(lo)?.text, self.number(hi)?.text);
                 let x = self.value(x, BindingMode::Pattern)?;
                 self.between(&x, &lo, &hi)
             }
@@ -72,8 +80,8 @@ impl ClauseTranslator<'_> {
                 format!("{name}({}, {})", args.join(", "), self.value(result, BindingMode::Pattern)?)
             }
             (".substring", [part, whole, places @ ..]) => return self.substring(part, whole, places),
-            (".number" | ".string" | ".list" | ".atom" | ".ground", [term]) => {
-                self.is_of(name, term)?.to_string()
+            (".number" | ".string" | ".list" | ".atom" | ".structure" | ".literal" | ".ground", [term]) => {
+                return self.is_of(name, term);
             }
             (".prefix" | ".suffix" | ".sublist", [a, b]) => {
                 format!(
@@ -127,7 +135,7 @@ impl ClauseTranslator<'_> {
         if name == ".setof" && values.len() > 1 {
             return Err("a list of structures cannot be sorted".into());
         }
-        let lists = self.values(list, BindingMode::Pattern)?;
+        let lists = self.part(list, BindingMode::Pattern, &AlternativeSort::List)?;
         let each = values
             .iter()
             .zip(&lists)
@@ -137,7 +145,7 @@ impl ClauseTranslator<'_> {
 
     /// Of a list of structures, the elements of its lists at one place.
     fn member(&mut self, element: &AgentSpeakTerm, list: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
-        let lists = self.values(list, BindingMode::Value)?;
+        let lists = self.part(list, BindingMode::Value, &AlternativeSort::List)?;
         let elements = self.values(element, BindingMode::Pattern)?;
         match (elements.as_slice(), lists.as_slice()) {
             ([x], [l]) => Ok(ClauseFragment::new(format!(".member({x}, {l})"), ATOM)),
@@ -151,6 +159,7 @@ impl ClauseTranslator<'_> {
         list: &AgentSpeakTerm,
         element: &AgentSpeakTerm,
     ) -> ClauseResult<ClauseFragment> {
+        self.of_one_type(list)?;
         let lists = self.values(list, BindingMode::Value)?;
         let mut elements = self.values(element, BindingMode::Pattern)?;
         if let ([x], [l]) = (elements.as_slice(), lists.as_slice()) {
@@ -188,6 +197,9 @@ impl ClauseTranslator<'_> {
         args: &[AgentSpeakTerm],
         result: &AgentSpeakTerm,
     ) -> ClauseResult<ClauseFragment> {
+        for of in args.iter().chain([result]) {
+            self.no_choice(of)?;
+        }
         let args =
             args.iter().map(|a| self.values(a, BindingMode::Value)).collect::<ClauseResult<Vec<_>>>()?;
         let results = self.values(result, BindingMode::Pattern)?;
@@ -291,7 +303,7 @@ impl ClauseTranslator<'_> {
         let known = atom(to).filter(|name| *name != "self").map(str::to_owned);
         let whom = match atom(to) {
             Some(name) => self.cx.names.agents.get(name).cloned().unwrap_or_else(|| name.to_owned()),
-            None => self.value(to, BindingMode::Value)?,
+            None => self.single(to, BindingMode::Value, &AlternativeSort::Atom)?,
         };
         match (message.performative, message.rest) {
             ("askOne", [answer, time @ ..]) => self.ask(&whom, known, message, answer, time),
@@ -365,6 +377,7 @@ impl ClauseTranslator<'_> {
             TermKind::Var { .. } | TermKind::Any => vec![None; question.args.len()],
             _ => return Err("the answer is not of the form of the question".into()),
         };
+        self.no_choice(answer)?;
         let whole = match &answer.kind {
             TermKind::Var { .. } if !question.args.is_empty() => self.values(answer, BindingMode::Pattern)?,
             _ => Vec::new(),

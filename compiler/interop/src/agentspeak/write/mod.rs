@@ -17,6 +17,7 @@ mod print;
 mod steps;
 mod strings;
 mod told;
+mod values;
 mod wanted;
 mod writer;
 
@@ -87,6 +88,10 @@ impl AgentSpeakTranslator<'_> {
         text.push('\n');
         for of in &self.names.enums {
             let values: Vec<&str> = of.values.values().map(String::as_str).collect();
+            text += &format!("enum {} {{ {} }}\n", of.name, values.join(", "));
+        }
+        for of in &self.names.tags.enums {
+            let values: Vec<&str> = of.values.iter().map(String::as_str).collect();
             text += &format!("enum {} {{ {} }}\n", of.name, values.join(", "));
         }
         for of in self.names.texts.values() {

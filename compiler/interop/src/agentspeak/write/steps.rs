@@ -44,6 +44,11 @@ pub fn block(lines: &[PlanBodyLine]) -> String {
     }
 }
 
+/// What is asked first, as a step.
+fn asked(text: String) -> String {
+    if text.contains(" == ") && !text.starts_with('.') { format!("?({text})") } else { text }
+}
+
 impl ClauseTranslator<'_> {
     /// A body; what cannot be carried over is a comment, and goes into `out`.
     pub fn steps(
@@ -65,7 +70,7 @@ impl ClauseTranslator<'_> {
             let first = std::mem::take(&mut self.first);
             match written {
                 Ok((texts, is_end)) => {
-                    lines.extend(first.into_iter().map(PlanBodyLine::Step));
+                    lines.extend(first.into_iter().map(asked).map(PlanBodyLine::Step));
                     lines.extend(texts.into_iter().map(PlanBodyLine::Step));
                     if is_end {
                         break;
@@ -197,7 +202,12 @@ impl ClauseTranslator<'_> {
     fn action_args(&mut self, terms: &[AgentSpeakTerm]) -> ClauseResult<Vec<String>> {
         let mut args = Vec::new();
         for term in terms {
-            let leaves = self.cx.types.leaves(self.type_of(term)?);
+            let id = self.type_of(term)?;
+            if self.cx.types.alternatives(id).is_some() {
+                let message = "values of several types: the action has a tag and the parts of all of them";
+                self.remarks.push((term.span, message.to_owned()));
+            }
+            let leaves = self.cx.types.leaves(id);
             for (value, leaf) in self.values(term, BindingMode::Value)?.into_iter().zip(leaves) {
                 if let Some(texts) = self.cx.names.texts_of(self.cx.types, leaf) {
                     args.push(texts.expr(&value));

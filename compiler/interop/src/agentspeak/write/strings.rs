@@ -2,10 +2,10 @@
 
 use super::{
     super::{
+        alternatives::AlternativeSort,
         ast::{AgentSpeakTerm, TermKind},
-        types::AgentSpeakType,
     },
-    clause::{ATOM, BindingMode, COMPARE, ClauseFragment, ClauseResult, ClauseTranslator},
+    clause::{ATOM, BindingMode, COMPARE, ClauseFragment, ClauseResult, ClauseTranslator, OR},
 };
 
 impl ClauseTranslator<'_> {
@@ -23,10 +23,10 @@ impl ClauseTranslator<'_> {
         };
         let end = end.first();
         if self.is_bound(begin) && !self.is_bound(part) {
-            return self.part(whole, begin, end, part);
+            return self.piece(whole, begin, end, part);
         }
         if self.is_bound(begin) && !self.is_bound(whole) {
-            return self.part(part, begin, end, whole);
+            return self.piece(part, begin, end, whole);
         }
         let (part, whole) = (self.expr(part)?.text, self.expr(whole)?.text);
         let found = self.fresh("Places");
@@ -45,7 +45,7 @@ impl ClauseTranslator<'_> {
         Ok(ClauseFragment::all(parts))
     }
 
-    fn part(
+    fn piece(
         &mut self,
         of: &AgentSpeakTerm,
         begin: &AgentSpeakTerm,
@@ -67,23 +67,44 @@ impl ClauseTranslator<'_> {
         Ok(ClauseFragment::all(parts))
     }
 
-    /// Of which kind a term is, and whether it has a value, is known when the program is read.
-    pub(super) fn is_of(&mut self, asked: &str, term: &AgentSpeakTerm) -> ClauseResult<bool> {
+    /// Of which kind a term is, and whether it has a value, is known when the program is read, or its tag says so.
+    pub(super) fn is_of(&mut self, asked: &str, term: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
+        let constant = |holds: bool| Ok(ClauseFragment::new(holds.to_string(), ATOM));
         let unsure = matches!(&term.kind, TermKind::Var { name, .. } if self.owed.contains_key(name));
         if unsure && !self.is_bound(term) {
             return Err("whether this has a value is known only when it runs".into());
         }
         if asked == ".ground" || !self.is_bound(term) {
-            return Ok(asked == ".ground" && self.is_bound(term));
+            return constant(asked == ".ground" && self.is_bound(term));
         }
-        Ok(match (asked, self.cx.types.get(self.type_of(term)?)) {
-            (_, AgentSpeakType::Unknown) => {
-                return Err("nothing says of what kind this is".into());
-            }
-            (".number", ty) => matches!(ty, AgentSpeakType::Number { .. }),
-            (".string", ty) => *ty == AgentSpeakType::Text,
-            (".list", ty) => matches!(ty, AgentSpeakType::List(_)),
-            (_, ty) => matches!(ty, AgentSpeakType::Atoms { .. } | AgentSpeakType::Bool),
-        })
+        let (types, id) = (self.cx.types, self.type_of(term)?);
+        let Some(all) = types.alternatives(id) else {
+            let sort = types.get(id).sort().ok_or("nothing says of what kind this is")?;
+            return constant(is_asked(asked, &sort));
+        };
+        if let Some((_, own)) = self.own_alternative(term, id) {
+            return constant(types.get(own).sort().is_some_and(|s| is_asked(asked, &s)));
+        }
+        let tag = self.values(term, BindingMode::Value)?[0].clone();
+        let hold: Vec<usize> = (0..all.len())
+            .filter(|i| types.get(all[*i]).sort().is_some_and(|s| is_asked(asked, &s)))
+            .collect();
+        if hold.is_empty() || hold.len() == all.len() {
+            return constant(!hold.is_empty());
+        }
+        let tests: Vec<String> =
+            hold.iter().map(|i| format!("{tag} == {}", self.cx.names.tag(types, id, *i))).collect();
+        Ok(ClauseFragment::new(tests.join(" || "), if tests.len() > 1 { OR } else { COMPARE }))
+    }
+}
+
+/// Whether values of a sort are what is asked for.
+fn is_asked(asked: &str, sort: &AlternativeSort) -> bool {
+    match sort {
+        AlternativeSort::Number => asked == ".number",
+        AlternativeSort::Text => asked == ".string",
+        AlternativeSort::List => matches!(asked, ".list" | ".structure"),
+        AlternativeSort::Truth | AlternativeSort::Atom => matches!(asked, ".atom" | ".literal"),
+        AlternativeSort::Structure(..) => matches!(asked, ".structure" | ".literal"),
     }
 }
