@@ -33,6 +33,7 @@ pub fn print(me: &Path, threads: usize) -> Result<(), String> {
     Ok(())
 }
 
+#[allow(clippy::disallowed_methods, reason = "a bench measures by the wall clock")]
 fn least(me: &Path, name: &str, size: i64, threads: usize) -> Result<f64, String> {
     let mut least = f64::INFINITY;
     for _ in 0..TIMES {
