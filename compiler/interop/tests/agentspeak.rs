@@ -199,6 +199,11 @@ fn values_of_several_types_are_a_tag_and_parts() {
         messages(&listed, NoteSeverity::LeftOut),
         ["a list of values of several types cannot be printed"]
     );
+    // The plan stays, for what it is asked of are numbers as a rule.
+    let best = from_text("best(none).\n!b(3).\n+!b(N) : best(M) & N > M <- -+best(N).\n");
+    assert_eq!(messages(&best, NoteSeverity::LeftOut), Vec::<&str>::new());
+    let said = messages(&best, NoteSeverity::Warning);
+    assert!(said.iter().any(|m| m.ends_with("of two that differ, this never holds")), "{said:?}");
 }
 
 #[test]

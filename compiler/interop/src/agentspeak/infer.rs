@@ -5,6 +5,7 @@ use hrdsl_source::Span;
 use indexmap::IndexMap;
 
 use super::{
+    alternatives::AlternativeSort,
     ast::{
         AgentSpeakFormula, AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakOperator,
         AgentSpeakOperatorSort, AgentSpeakPlan, AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm,
@@ -273,8 +274,18 @@ impl TypeInferrer {
     fn ordered(&mut self, left: TyId, right: TyId) -> Result<(), OmissionReason> {
         let number = self.types.number(false);
         if [left, right].iter().all(|id| self.types.alternatives(*id).is_none()) {
-            self.types.meet(left, right)?;
-            return self.types.meet(left, number);
+            let before = self.types.mark();
+            let meets = self.types.meet(left, right).and_then(|()| self.types.meet(left, number));
+            let Err(clash) = meets else { return Ok(()) };
+            self.types.back(before);
+            // A value that is no number yet, compared with a number, will be one: `best(none)`, `best(M) & N > M`.
+            let is_number = |w: &Self, id| w.types.get(id).sort() == Some(AlternativeSort::Number);
+            let other = match (is_number(self, left), is_number(self, right)) {
+                (true, false) => right,
+                (false, true) => left,
+                (true, true) | (false, false) => return Err(clash),
+            };
+            self.types.unify(other, number)?;
         }
         for id in [left, right] {
             if self.types.alternatives(id).is_none() {

@@ -11,6 +11,14 @@ use super::{
     clause::{ATOM, BindingMode, COMPARE, ClauseFragment, ClauseResult, ClauseTranslator, NOT, OR, SUM},
 };
 
+/// What a term is if it is of one sort.
+struct TaggedParts {
+    sort: AlternativeSort,
+    /// The test of its tag, if it may be of another.
+    test: Option<String>,
+    parts: Vec<String>,
+}
+
 impl ClauseTranslator<'_> {
     pub(super) fn compare(
         &mut self,
@@ -54,12 +62,7 @@ impl ClauseTranslator<'_> {
             return Ok(ClauseFragment::new(format!("{} {sign} {}", l.at(SUM), r.at(SUM)), COMPARE));
         }
         let (l, r) = (self.values(left, BindingMode::Value)?, self.values(right, BindingMode::Value)?);
-        let pairs = l
-            .iter()
-            .zip(&r)
-            .filter(|(l, r)| l != r)
-            .map(|(l, r)| ClauseFragment::new(format!("{l} == {r}"), COMPARE));
-        let same = ClauseFragment::all(pairs.collect());
+        let same = same(&l, &r);
         // Of several parts that differ, each would be an answer of its own.
         Ok(if sign == "==" { same } else { ClauseFragment::new(format!("not ({})", same.text), NOT) })
     }
@@ -72,25 +75,31 @@ impl ClauseTranslator<'_> {
         sides: [&AgentSpeakTerm; 2],
     ) -> ClauseResult<ClauseFragment> {
         let (left, right) = (self.alternatives_of(sides[0])?, self.alternatives_of(sides[1])?);
-        let mut cases = Vec::new();
-        for (a, a_tag, x) in &left {
-            for (b, b_tag, y) in &right {
-                let mut parts: Vec<ClauseFragment> = [a_tag, b_tag]
-                    .into_iter()
-                    .flatten()
-                    .map(|t| ClauseFragment::new(t.clone(), COMPARE))
-                    .collect();
-                if a.rank() != b.rank() {
-                    if holds(op, a.rank().cmp(&b.rank())) == Some(true) {
+        let (mut cases, mut is_unknown) = (Vec::new(), false);
+        for a in &left {
+            for b in &right {
+                let tests = [&a.test, &b.test].into_iter().flatten();
+                let mut parts: Vec<ClauseFragment> =
+                    tests.map(|t| ClauseFragment::new(t.clone(), COMPARE)).collect();
+                if a.sort.rank() != b.sort.rank() {
+                    if holds(op, a.sort.rank().cmp(&b.sort.rank())) == Some(true) {
                         cases.push(ClauseFragment::all(parts));
                     }
-                } else if let (AlternativeSort::Number, AlternativeSort::Number) = (a, b) {
-                    parts.push(ClauseFragment::new(format!("{x} {sign} {y}"), COMPARE));
+                } else if let (AlternativeSort::Number, AlternativeSort::Number) = (&a.sort, &b.sort) {
+                    parts.push(ClauseFragment::new(format!("{} {sign} {}", a.parts[0], b.parts[0]), COMPARE));
                     cases.push(ClauseFragment::all(parts));
                 } else {
-                    return Err("which of two values that are no numbers is less is not known".into());
+                    is_unknown = true;
+                    if a.sort == b.sort && holds(op, Ordering::Equal) == Some(true) {
+                        parts.push(same(&a.parts, &b.parts));
+                        cases.push(ClauseFragment::all(parts));
+                    }
                 }
             }
+        }
+        if is_unknown {
+            let message = "which of two values that are no numbers is less is not known: of two that differ, this never holds";
+            self.remarks.push((sides[0].span, message.to_owned()));
         }
         let cases: Vec<String> = cases.into_iter().map(|c| c.at(COMPARE)).collect();
         Ok(if cases.is_empty() {
@@ -100,22 +109,21 @@ impl ClauseTranslator<'_> {
         })
     }
 
-    /// Of which sorts a term may be, each with the test of its tag and the number that it is then.
-    fn alternatives_of(
-        &mut self,
-        of: &AgentSpeakTerm,
-    ) -> ClauseResult<Vec<(AlternativeSort, Option<String>, String)>> {
+    /// What a term may be.
+    fn alternatives_of(&mut self, of: &AgentSpeakTerm) -> ClauseResult<Vec<TaggedParts>> {
         let (types, id) = (self.cx.types, self.type_of(of)?);
         let Some(all) = types.alternatives(id).filter(|_| self.own_alternative(of, id).is_none()) else {
-            let text = self.expr(of)?.at(SUM);
-            return Ok(vec![(AlternativeSort::Number, None, text)]);
+            let parts = vec![self.expr(of)?.at(SUM)];
+            return Ok(vec![TaggedParts { sort: AlternativeSort::Number, test: None, parts }]);
         };
         let values = self.values(of, BindingMode::Value)?;
         let (mut found, mut at) = (Vec::new(), 1);
         for (i, own) in all.iter().enumerate() {
-            let tag = format!("{} == {}", values[0], self.cx.names.tag(types, id, i));
-            found.extend(types.get(*own).sort().map(|sort| (sort, Some(tag), values[at].clone())));
-            at += types.leaves(*own).len();
+            let test = format!("{} == {}", values[0], self.cx.names.tag(types, id, i));
+            let end = at + types.leaves(*own).len();
+            let parts = values[at..end].to_vec();
+            found.extend(types.get(*own).sort().map(|sort| TaggedParts { sort, test: Some(test), parts }));
+            at = end;
         }
         Ok(found)
     }
@@ -146,6 +154,12 @@ impl ClauseTranslator<'_> {
         self.remarks.push((span, message));
         Some(holds)
     }
+}
+
+/// That all parts are the same.
+fn same(left: &[String], right: &[String]) -> ClauseFragment {
+    let pairs = left.iter().zip(right).filter(|(l, r)| l != r);
+    ClauseFragment::all(pairs.map(|(l, r)| ClauseFragment::new(format!("{l} == {r}"), COMPARE)).collect())
 }
 
 /// Whether a comparison holds of two terms in this order; `None`: it is none.
