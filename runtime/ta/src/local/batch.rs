@@ -9,11 +9,7 @@ use super::{
     waiting::PackedZone,
     zone::{LocalLuBounds, LocalZoneBound},
 };
-use crate::search::{
-    batch::PendingZone,
-    store::{NIL, hash_zone},
-    waiting::level,
-};
+use crate::search::{batch::PendingZone, store::NIL, waiting::level};
 
 /// A successor that something comes of: it meets goals by its transition, or nothing stored simulates it.
 pub(super) struct LocalSuccessor {
@@ -150,15 +146,9 @@ impl LocalBatch {
                 ZoneSpan::Wide(self.wide.len() - bounds.len())
             }
         };
-        let hash_of_zone = hash_zone(&w.together);
-        let together = match c.store.find_zone(&w.together, hash_of_zone) {
-            Some(at) => PendingZone::Stored(at),
-            None => {
-                let at = self.together.len() as u32;
-                self.together.extend_from_slice(&w.together);
-                PendingZone::New { at, hash: hash_of_zone }
-            }
-        };
+        let at = self.together.len();
+        self.together.extend_from_slice(&w.together);
+        let together = PendingZone::of(c.store, &mut self.together, at);
         self.pending = Some(FoundState {
             discrete: known.unwrap_or(NIL),
             level: level(c.levels, &w.effect.target, &[]),

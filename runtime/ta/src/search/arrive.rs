@@ -10,7 +10,7 @@ use crate::{
         monotone::{may_drive_out, no_worse},
         options::SubsumptionRelation,
         stepper::SymbolicSuccessor,
-        store::{NIL, hash_words, hash_zone},
+        store::{NIL, hash_words},
         waiting,
     },
     zone::{
@@ -299,14 +299,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         }
         batch.words.extend_from_slice(&m.packed);
         batch.ranks.extend_from_slice(&m.ranks);
-        let hash_of_zone = hash_zone(&batch.zones[place..]);
-        let zone = match self.c.store.find_zone(&batch.zones[place..], hash_of_zone) {
-            Some(at) => {
-                batch.zones.truncate(place);
-                PendingZone::Stored(at)
-            }
-            None => PendingZone::New { at: place as u32, hash: hash_of_zone },
-        };
+        let zone = PendingZone::of(self.c.store, &mut batch.zones, place);
         batch.push(PendingState {
             parent,
             via,

@@ -6,7 +6,10 @@ use std::ops::Range;
 
 use crate::{
     network::error::ModelError,
-    search::{probe::ProbeFinding, store::PassedList},
+    search::{
+        probe::ProbeFinding,
+        store::{PassedList, hash_zone},
+    },
     zone::dbm::DbmNumber,
 };
 
@@ -40,6 +43,20 @@ pub(crate) enum PendingZone {
     Stored(u32),
     /// Where it begins in the batch.
     New { at: u32, hash: u64 },
+}
+
+impl PendingZone {
+    /// The zone that `zones` ends with, from there on: if it is stored, it is taken away.
+    pub(crate) fn of<N: DbmNumber>(store: &PassedList<N>, zones: &mut Vec<N>, at: usize) -> Self {
+        let hash = hash_zone(&zones[at..]);
+        match store.find_zone(&zones[at..], hash) {
+            Some(known) => {
+                zones.truncate(at);
+                Self::Stored(known)
+            }
+            None => Self::New { at: at as u32, hash },
+        }
+    }
 }
 
 impl PendingState {
