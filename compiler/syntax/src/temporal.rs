@@ -51,6 +51,17 @@ pub enum TemporalJunction {
 }
 
 impl TemporalJunction {
+    /// Whether one part alone makes the whole true, or false; and what the first part is then, or must be. The second is what the whole is.
+    fn settled(self, truth: bool) -> (bool, bool) {
+        match self {
+            Self::And => (!truth, truth),
+            Self::Or => (truth, truth),
+            Self::Implies => (truth, !truth),
+        }
+    }
+}
+
+impl TemporalJunction {
     /// As it is written.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -208,11 +219,7 @@ impl<E, C, T> TemporalFormula<E, C, T> {
             TemporalKind::Not(of) => of.add_met_by(!truth, out),
             TemporalKind::Junction(junction, parts) => {
                 let [a, b] = parts.as_ref();
-                let (either, first) = match junction {
-                    TemporalJunction::And => (!truth, truth),
-                    TemporalJunction::Or => (truth, truth),
-                    TemporalJunction::Implies => (truth, !truth),
-                };
+                let (either, first) = junction.settled(truth);
                 if either {
                     a.add_met_by(first, out);
                     b.add_met_by(truth, out);
@@ -249,11 +256,7 @@ impl<E, C, T> TemporalFormula<E, C, T> {
             TemporalKind::Not(of) => of.silenced(!truth),
             TemporalKind::Junction(junction, parts) => {
                 let [a, b] = parts.as_ref();
-                let (either, first) = match junction {
-                    TemporalJunction::And => (!truth, truth),
-                    TemporalJunction::Or => (truth, truth),
-                    TemporalJunction::Implies => (truth, !truth),
-                };
+                let (either, first) = junction.settled(truth);
                 let (a, b) = (a.silenced(first), b.silenced(truth));
                 if either { a.or(b) } else { a.zip(b).map(|(a, b)| [a, b].concat()) }
             }
