@@ -80,6 +80,22 @@ enum Piece<'t> {
     Code(&'t str),
 }
 
+/// Length of the number that `text` starts with. An exponent is part of it: `e300` is no name.
+fn number(text: &str) -> usize {
+    let digits = |from: usize| text[from..].bytes().take_while(u8::is_ascii_digit).count();
+    let whole = digits(0);
+    if !text[whole..].starts_with('.') || digits(whole + 1) == 0 {
+        return whole;
+    }
+    let fraction = whole + 1 + digits(whole + 1);
+    let Some(power) = text[fraction..].strip_prefix(['e', 'E']) else { return fraction };
+    let sign = usize::from(power.starts_with(['+', '-']));
+    match digits(fraction + 1 + sign) {
+        0 => fraction,
+        digits => fraction + 1 + sign + digits,
+    }
+}
+
 fn pieces(text: &str) -> Vec<Piece<'_>> {
     let mut pieces = Vec::new();
     let mut rest = text;
@@ -97,7 +113,7 @@ fn pieces(text: &str) -> Vec<Piece<'_>> {
             }
             end + 1
         } else if c.is_ascii_digit() {
-            rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())
+            number(rest)
         } else if c.is_alphanumeric() || c == '_' {
             rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len())
         } else {
