@@ -91,6 +91,24 @@ pub(crate) struct SymbolicNode {
     pub covered: bool,
 }
 
+/// Where a zone is, in a table by hashes. With half of its hash, so that the table grows without a look at all zones.
+#[derive(Clone, Copy)]
+struct HashedZone {
+    at: u32,
+    half: u32,
+}
+
+impl HashedZone {
+    fn new(at: u32, hash: u64) -> Self {
+        Self { at, half: (hash ^ (hash >> 32)) as u32 }
+    }
+
+    /// The half spread over all bits: a table takes its groups by the low ones, its tags by the high ones.
+    fn spread(&self) -> u64 {
+        u64::from(self.half).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    }
+}
+
 pub(crate) struct PassedList<N> {
     pub layout: StateLayout,
     words: Vec<u64>,
@@ -98,7 +116,7 @@ pub(crate) struct PassedList<N> {
     numbers: HashTable<u32>,
     pub nodes: Vec<SymbolicNode>,
     zones: Vec<N>,
-    places: HashTable<(u32, u32)>,
+    places: HashTable<HashedZone>,
     /// The ranks of the one-way counters of each node, so many of each.
     ranks: Vec<u32>,
     counters: usize,
@@ -180,10 +198,10 @@ impl<N: DbmNumber> PassedList<N> {
 
     /// Where the zone of this hash is, if it is stored.
     pub(crate) fn find_zone(&self, zone: &[N], hash: u64) -> Option<u32> {
-        let known = self
-            .places
-            .find(hash, |&(at, len)| len as usize == zone.len() && self.zone_at(at, zone.len()) == zone);
-        known.map(|&(at, _)| at)
+        // Where a longer one begins with this, it is there, too.
+        let wanted = HashedZone::new(NIL, hash);
+        let is = |z: &HashedZone| z.half == wanted.half && self.zones[z.at as usize..].starts_with(zone);
+        self.places.find(wanted.spread(), is).map(|z| z.at)
     }
 
     pub(crate) fn find(&self, hash: u64, packed: &[u64]) -> Option<u32> {
@@ -212,10 +230,8 @@ impl<N: DbmNumber> PassedList<N> {
         }
         let place = self.zones.len() as u32;
         self.zones.extend_from_slice(zone);
-        let zones = &self.zones;
-        self.places.insert_unique(hash, (place, zone.len() as u32), |&(a, l)| {
-            hash_zone(&zones[a as usize..(a + l) as usize])
-        });
+        let new = HashedZone::new(place, hash);
+        self.places.insert_unique(new.spread(), new, HashedZone::spread);
         place
     }
 

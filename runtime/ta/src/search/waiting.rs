@@ -204,9 +204,8 @@ impl WaitingList {
         }
         let most = match self.order {
             SearchOrder::Breadth | SearchOrder::RandomBreadth => most,
-            SearchOrder::Depth | SearchOrder::RandomDepth | SearchOrder::Topological => {
-                (self.len() / 8).clamp(1, most / 4)
-            }
+            SearchOrder::Depth | SearchOrder::RandomDepth => (self.len() / 8).clamp(1, most / 4),
+            SearchOrder::Topological => (self.len() / 8).clamp(64, most / 4),
         };
         while out.len() < most {
             let next = match self.order {
