@@ -5,7 +5,6 @@ use super::{
     crew::LocalContext,
     refusal::LocalSearchError,
     search::{FEW, LocalGoalPath, LocalPause, LocalSearch, LocalWorkMemory},
-    space::LocalWorkspace,
 };
 use crate::search::report::SearchProgress;
 
@@ -50,12 +49,14 @@ impl LocalSearch<'_, '_> {
             let successors = batch.first_successor(at)..batch.nodes[at].end;
             let LocalExpansion { node, transitions, failure, .. } = &mut batch.nodes[at];
             let (node, transitions, failure) = (*node, *transitions, failure.take());
-            // Another of the round may have driven it out.
-            if self.zones.forget(node) {
+            if !batch.is_whole(at) {
+                self.expand_stored(node, worker)?;
+            } else if self.zones.forget(node) {
+                batch.nodes[at].done = true;
                 self.visited += 1;
                 self.transitions += transitions;
                 for successor in successors {
-                    self.store_successor(node, batch, successor, first, &mut worker.work)?;
+                    self.store_successor(node, batch, successor, first);
                 }
                 if let Some(failure) = failure {
                     return Err(self.led_to(node, failure));
@@ -71,28 +72,18 @@ impl LocalSearch<'_, '_> {
         nodes.iter().enumerate().filter(waits).nth(FEW - 1).map(|(at, _)| at + 1)
     }
 
-    fn store_successor(
-        &mut self,
-        node: u32,
-        batch: &LocalBatch,
-        successor: usize,
-        first: u32,
-        w: &mut LocalWorkspace,
-    ) -> Result<(), LocalSearchError> {
+    fn store_successor(&mut self, node: u32, batch: &LocalBatch, successor: usize, first: u32) {
         let number = batch.successors[successor].number;
         self.met.clear();
         self.met.extend_from_slice(batch.hits(successor));
         self.hit(LocalGoalPath { node, last: Some(number) });
-        let (words, bounds) = (self.store.layout.words, w.zone.bounds().len());
-        let Some(arrival) = batch.arrival(successor, words, bounds, first) else { return Ok(()) };
+        let Some(arrival) = batch.arrival(successor, self.store.layout.words, first) else { return };
         if let Some((new, true)) = self.arrive(arrival, node, number)
             && self.left > 0
         {
-            let state = &mut w.effect.target;
-            let size = state.len();
-            state.copy_from_slice(batch.state(successor, size));
-            self.look(state, &mut w.stack, new)?;
+            self.met.clear();
+            self.met.extend_from_slice(batch.met(successor));
+            self.hit(LocalGoalPath { node: new, last: None });
         }
-        Ok(())
     }
 }

@@ -2,12 +2,14 @@
 //!
 //! Each worker has a batch of its own for a round; what the states of one chunk lead to stands together in it.
 
+use hashbrown::HashTable;
+
 use super::{
     crew::LocalContext,
     refusal::LocalSearchError,
     space::LocalWorkspace,
-    waiting::PackedZone,
-    zone::{LocalLuBounds, LocalZoneBound},
+    waiting::{PackedZone, append_narrow},
+    zone::{self, LocalLuBounds, LocalZoneBound},
 };
 use crate::search::{batch::PendingZone, store::NIL, waiting::level};
 
@@ -20,8 +22,12 @@ pub(super) struct LocalSuccessor {
     found: Option<FoundState>,
 }
 
-/// A successor that no stored state simulates, and where its parts begin in the batch.
+/// A successor that no stored state simulates, nor one found before, and where its parts begin in the batch.
 struct FoundState {
+    /// The node whose successor it is: its place in the batch.
+    node: u32,
+    /// The successor of the same discrete state that was found before it, or [`NIL`].
+    before: u32,
     /// `NIL`: its discrete state was not there when the round began.
     discrete: u32,
     level: u32,
@@ -31,7 +37,8 @@ struct FoundState {
     /// How many clocks matter.
     clocks: usize,
     words: usize,
-    state: usize,
+    /// The goals that its discrete state meets, if that was not there when the round began.
+    met: (usize, usize),
     lu: usize,
     zone: ZoneSpan,
     driven_out: (usize, usize),
@@ -76,6 +83,10 @@ pub(super) struct LocalExpansion {
     pub transitions: usize,
     /// Where its successors end in those of the batch.
     pub end: usize,
+    /// Where the nodes that it relies on end in those of the batch.
+    relied_on: usize,
+    /// Its successors were stored, as far as nothing simulates them.
+    pub done: bool,
     /// Its last transition fails.
     pub failure: Option<LocalSearchError>,
 }
@@ -89,12 +100,18 @@ pub(super) struct LocalBatch {
     pub successors: Vec<LocalSuccessor>,
     hits: Vec<usize>,
     words: Vec<u64>,
-    states: Vec<i64>,
+    met: Vec<usize>,
     together: Vec<LocalZoneBound>,
     lu: Vec<LocalLuBounds>,
+    /// How many bounds a zone has.
+    bounds: usize,
     narrow: Vec<i16>,
     wide: Vec<LocalZoneBound>,
     driven_out: Vec<u32>,
+    /// The last successor found of each discrete state.
+    last: HashTable<u32>,
+    /// For each node those whose successors simulate some of its own, which therefore are not here.
+    relied_on: Vec<u32>,
     /// What the successor that is being added leads to.
     pending: Option<FoundState>,
 }
@@ -106,12 +123,14 @@ impl LocalBatch {
         self.successors.clear();
         self.hits.clear();
         self.words.clear();
-        self.states.clear();
+        self.met.clear();
         self.together.clear();
         self.lu.clear();
         self.narrow.clear();
         self.wide.clear();
         self.driven_out.clear();
+        self.last.clear();
+        self.relied_on.clear();
     }
 
     /// The nodes that follow are those of the round's chunk of this number.
@@ -124,49 +143,101 @@ impl LocalBatch {
         self.hits.push(goal);
     }
 
-    /// Keeps what is in the workspace; its discrete state is `known`, or not yet stored, packed like this with its hash.
+    /// Keeps what is in the workspace, unless a successor that was found before simulates it; its discrete state is `known`, or not yet
+    /// stored, packed like this with its hash.
     pub(super) fn found(
         &mut self,
         c: &LocalContext,
-        w: &LocalWorkspace,
+        w: &mut LocalWorkspace,
         known: Option<u32>,
         (hash, packed): (u64, &[u64]),
         driven_out: &[u32],
-        narrow: &mut Vec<i16>,
     ) {
+        let node = self.nodes.len() as u32;
+        let before = self.last_of(hash, packed);
+        if let Some(by) = self.simulating(c, w, before) {
+            // Of one node all successors are stored, or none.
+            if by != node && self.relied_on.last() != Some(&by) {
+                self.relied_on.push(by);
+            }
+            return;
+        }
+        let met = self.met.len();
+        if known.is_none() && c.look(w, &mut self.met).is_err() {
+            // Whoever stores it comes to the same failure.
+            self.met.truncate(met);
+            self.relied_on.push(node);
+            return;
+        }
+        let met = (met, self.met.len());
+        self.set_last(hash, before);
         let first = self.driven_out.len();
         self.driven_out.extend_from_slice(driven_out);
-        let zone = match PackedZone::of(&w.zone, narrow) {
-            PackedZone::Narrow(bounds) => {
-                self.narrow.extend_from_slice(bounds);
-                ZoneSpan::Narrow(self.narrow.len() - bounds.len())
-            }
-            PackedZone::Wide(bounds) => {
-                self.wide.extend_from_slice(bounds);
-                ZoneSpan::Wide(self.wide.len() - bounds.len())
-            }
+        self.bounds = w.zone.bounds().len();
+        let at = self.narrow.len();
+        let zone = if append_narrow(w.zone.bounds(), &mut self.narrow) {
+            ZoneSpan::Narrow(at)
+        } else {
+            self.wide.extend_from_slice(w.zone.bounds());
+            ZoneSpan::Wide(self.wide.len() - self.bounds)
         };
         let at = self.together.len();
         self.together.extend_from_slice(&w.together);
         let together = PendingZone::of(c.store, &mut self.together, at);
         self.pending = Some(FoundState {
+            node,
+            before,
             discrete: known.unwrap_or(NIL),
             level: level(c.levels, &w.effect.target, &[]),
             hash,
             together,
             clocks: w.lu.len(),
             words: self.words.len(),
-            state: self.states.len(),
+            met,
             lu: self.lu.len(),
             zone,
             driven_out: (first, self.driven_out.len()),
         });
         self.words.extend_from_slice(packed);
-        // Only goals ask for it.
-        if known.is_none() && !c.open.is_empty() {
-            self.states.extend_from_slice(&w.effect.target);
-        }
         self.lu.extend_from_slice(&w.lu);
+    }
+
+    /// The last successor found of a discrete state, or [`NIL`].
+    fn last_of(&self, hash: u64, packed: &[u64]) -> u32 {
+        let is = |&s: &u32| {
+            let found = self.successors[s as usize].found.as_ref();
+            found.is_some_and(|f| self.words[f.words..].starts_with(packed))
+        };
+        self.last.find(hash, is).copied().unwrap_or(NIL)
+    }
+
+    /// The next successor takes the place of the last one of its discrete state, if there is one.
+    fn set_last(&mut self, hash: u64, before: u32) {
+        let next = self.successors.len() as u32;
+        match self.last.find_mut(hash, |&s| s == before) {
+            Some(last) => *last = next,
+            None => {
+                let of = |&s: &u32| self.successors[s as usize].found.as_ref().map_or(0, |f| f.hash);
+                self.last.insert_unique(hash, next, of);
+            }
+        }
+    }
+
+    /// The node of a successor of the discrete state, this one or one found before, that simulates the state in the workspace.
+    fn simulating(&self, c: &LocalContext, w: &LocalWorkspace, mut last: u32) -> Option<u32> {
+        let entries = (w.lu.len() + 1).pow(2);
+        while last != NIL {
+            let f = self.successors[last as usize].found.as_ref()?;
+            let old = match f.together {
+                PendingZone::Stored(at) => c.store.zone_at(at, entries),
+                PendingZone::New { at, .. } => &self.together[at as usize..at as usize + entries],
+            };
+            if zone::is_simulated(&w.together, old, &w.lu) {
+                return Some(f.node);
+            }
+            last = f.before;
+        }
+        None
     }
 
     /// The successor of this number is complete.
@@ -179,7 +250,21 @@ impl LocalBatch {
     }
 
     pub(super) fn end_node(&mut self, node: u32, transitions: usize, failure: Option<LocalSearchError>) {
-        self.nodes.push(LocalExpansion { node, transitions, end: self.successors.len(), failure });
+        self.nodes.push(LocalExpansion {
+            node,
+            transitions,
+            end: self.successors.len(),
+            relied_on: self.relied_on.len(),
+            done: false,
+            failure,
+        });
+    }
+
+    /// Whether the successors of a node are all here, or simulated by what was stored. Otherwise it must be expanded again: it relied on
+    /// successors of nodes that were driven out meanwhile.
+    pub(super) fn is_whole(&self, node: usize) -> bool {
+        let first = node.checked_sub(1).map_or(0, |before| self.nodes[before].relied_on);
+        self.relied_on[first..self.nodes[node].relied_on].iter().all(|&on| self.nodes[on as usize].done)
     }
 
     /// Where the successors of a node begin.
@@ -193,21 +278,14 @@ impl LocalBatch {
         &self.hits[before..self.successors[successor].hits]
     }
 
-    /// The discrete state of a successor that was not there when the round began, if goals ask for it.
-    pub(super) fn state(&self, successor: usize, size: usize) -> &[i64] {
-        let found = self.successors[successor].found.as_ref();
-        found.and_then(|f| self.states.get(f.state..f.state + size)).unwrap_or(&[])
+    /// The goals that the discrete state of a successor meets, which was not there when the round began.
+    pub(super) fn met(&self, successor: usize) -> &[usize] {
+        self.successors[successor].found.as_ref().map_or(&[], |f| &self.met[f.met.0..f.met.1])
     }
 
-    /// What is to be stored of a successor, whose packed state has so many words and whose zone so many bounds; `None`: a stored one
+    /// What is to be stored of a successor, whose packed state has so many words; `None`: a stored one
     /// simulates it. The nodes before `compared` were there when the round began.
-    pub(super) fn arrival(
-        &self,
-        successor: usize,
-        words: usize,
-        bounds: usize,
-        compared: u32,
-    ) -> Option<LocalArrival<'_>> {
+    pub(super) fn arrival(&self, successor: usize, words: usize, compared: u32) -> Option<LocalArrival<'_>> {
         let f = self.successors[successor].found.as_ref()?;
         let dim = f.clocks + 1;
         Some(LocalArrival {
@@ -223,8 +301,8 @@ impl LocalBatch {
             },
             lu: &self.lu[f.lu..f.lu + f.clocks],
             zone: match f.zone {
-                ZoneSpan::Narrow(at) => PackedZone::Narrow(&self.narrow[at..at + bounds]),
-                ZoneSpan::Wide(at) => PackedZone::Wide(&self.wide[at..at + bounds]),
+                ZoneSpan::Narrow(at) => PackedZone::Narrow(&self.narrow[at..at + self.bounds]),
+                ZoneSpan::Wide(at) => PackedZone::Wide(&self.wide[at..at + self.bounds]),
             },
             compared,
             driven_out: &self.driven_out[f.driven_out.0..f.driven_out.1],

@@ -13,7 +13,10 @@ use super::{
     zone::{self, LocalLuBounds, LocalZone, LocalZoneBound},
 };
 use crate::{
-    network::semantics::{EnumerationScratch, FiringOrError, TransitionFiring},
+    network::{
+        error::ModelError,
+        semantics::{EnumerationScratch, FiringOrError, TransitionFiring},
+    },
     search::{
         goals::CompiledGoals,
         store::{NIL, PassedList, hash_words},
@@ -22,7 +25,7 @@ use crate::{
 };
 
 /// States that one thread expands in one go.
-const CHUNK: usize = 16;
+const CHUNK: usize = 32;
 
 /// What an expansion may look at.
 pub(super) struct LocalContext<'a, 'm, 'p> {
@@ -36,6 +39,21 @@ pub(super) struct LocalContext<'a, 'm, 'p> {
     pub levels: &'a [Vec<u32>],
 }
 
+impl LocalContext<'_, '_, '_> {
+    /// Adds the open goals that the state in the workspace meets: all have one time in it.
+    ///
+    /// # Errors
+    /// A condition that cannot be evaluated there.
+    pub(super) fn look(&self, w: &mut LocalWorkspace, met: &mut Vec<usize>) -> Result<(), ModelError> {
+        if self.open.is_empty() {
+            return Ok(());
+        }
+        let state = &mut w.effect.target;
+        let settled = !self.space.model.any_committed(state);
+        self.goals.states(state, None, &mut w.stack, self.space.model, settled, self.open, met)
+    }
+}
+
 /// Computes successors, with memory that it uses again and again.
 #[derive(Default)]
 pub(super) struct LocalWorker {
@@ -46,7 +64,6 @@ pub(super) struct LocalWorker {
     pub zone: LocalZone,
     packed: Vec<u64>,
     driven_out: Vec<u32>,
-    narrow: Vec<i16>,
 }
 
 /// A worker for each thread.
@@ -93,7 +110,6 @@ impl LocalWorker {
         let mut transitions = 0;
         let mut packed = std::mem::take(&mut self.packed);
         let mut driven_out = std::mem::take(&mut self.driven_out);
-        let mut narrow = std::mem::take(&mut self.narrow);
         let end = self.successors(c.space, |w, before, firing, number| {
             transitions += 1;
             if !c.open.is_empty() {
@@ -111,12 +127,12 @@ impl LocalWorker {
                 is_simulated(c.store, discrete, 0, (&w.together, &w.lu), &mut driven_out)
             });
             if !simulated {
-                batch.found(c, w, known, (hash, &packed), &driven_out, &mut narrow);
+                batch.found(c, w, known, (hash, &packed), &driven_out);
             }
             batch.end_successor(number);
             Ok(())
         });
-        (self.packed, self.driven_out, self.narrow) = (packed, driven_out, narrow);
+        (self.packed, self.driven_out) = (packed, driven_out);
         batch.end_node(node, transitions, end.err());
     }
 }

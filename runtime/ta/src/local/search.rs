@@ -228,14 +228,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             let LocalWorkMemory { worker, round, .. } = memory;
             self.waiting.take(&self.store.nodes, FEW, round);
             for &id in &*round {
-                // Another of the round may have driven it out.
-                if !self.zones.take(id, &mut worker.zone) {
-                    continue;
-                }
-                let node = self.store.nodes[id as usize];
-                self.store.layout.unpack(self.store.packed(node.discrete), &mut worker.state);
-                self.visited += 1;
-                self.expand(id, worker)?;
+                self.expand_stored(id, worker)?;
             }
         }
     }
@@ -322,7 +315,18 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         }
     }
 
-    fn expand(&mut self, id: u32, worker: &mut LocalWorker) -> Result<(), LocalSearchError> {
+    /// Stores what a state leads to, unless it was driven out.
+    pub(super) fn expand_stored(
+        &mut self,
+        id: u32,
+        worker: &mut LocalWorker,
+    ) -> Result<(), LocalSearchError> {
+        if !self.zones.take(id, &mut worker.zone) {
+            return Ok(());
+        }
+        let node = self.store.nodes[id as usize];
+        self.store.layout.unpack(self.store.packed(node.discrete), &mut worker.state);
+        self.visited += 1;
         // INVARIANT: the space is not changed by what is stored.
         let space = Arc::clone(&self.space);
         let end = worker.successors(&space, |w, before, firing, number| {
@@ -432,12 +436,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
     }
 
     /// Looks at the goals that a new discrete state meets: all have one time in it.
-    pub(super) fn look(
-        &mut self,
-        state: &mut [i64],
-        stack: &mut Vec<i64>,
-        node: u32,
-    ) -> Result<(), LocalSearchError> {
+    fn look(&mut self, state: &mut [i64], stack: &mut Vec<i64>, node: u32) -> Result<(), LocalSearchError> {
         self.met.clear();
         let model = self.space.model;
         let settled = !model.any_committed(state);

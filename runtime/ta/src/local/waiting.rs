@@ -35,8 +35,8 @@ impl<'a> PackedZone<'a> {
     /// Packs the zone, with that room for it.
     pub(super) fn of(zone: &'a LocalZone, room: &'a mut Vec<i16>) -> Self {
         let bounds = zone.bounds();
-        room.resize(bounds.len(), NO_BOUND);
-        if narrow(bounds, room) { Self::Narrow(room) } else { Self::Wide(bounds) }
+        room.clear();
+        if append_narrow(bounds, room) { Self::Narrow(room) } else { Self::Wide(bounds) }
     }
 }
 
@@ -143,6 +143,17 @@ impl WaitingZones {
 
 /// What stands for no bound.
 const NO_BOUND: i16 = i16::MAX;
+
+/// Adds the bounds in half the room; `false`: one of them does not fit, and nothing was added.
+pub(super) fn append_narrow(bounds: &[LocalZoneBound], out: &mut Vec<i16>) -> bool {
+    let at = out.len();
+    out.resize(at + bounds.len(), NO_BOUND);
+    let fits = narrow(bounds, &mut out[at..]);
+    if !fits {
+        out.truncate(at);
+    }
+    fits
+}
 
 /// Writes the bounds in half the room; `false`: one of them does not fit.
 fn narrow(bounds: &[LocalZoneBound], out: &mut [i16]) -> bool {

@@ -205,7 +205,8 @@ impl WaitingList {
         let most = match self.order {
             SearchOrder::Breadth | SearchOrder::RandomBreadth => most,
             SearchOrder::Depth | SearchOrder::RandomDepth => (self.len() / 8).clamp(1, most / 4),
-            SearchOrder::Topological => (self.len() / 8).clamp(64, most / 4),
+            // Few more are expanded so than one by one, and they are enough for several threads.
+            SearchOrder::Topological => (self.len() / 8).max(FEW).min(most / 4),
         };
         while out.len() < most {
             let next = match self.order {
@@ -229,7 +230,8 @@ impl WaitingList {
     }
 }
 
-/// States of a round by time: of all that arrive at once the first may do, or lead to what covers the others.
+/// States of a round by time: of all that arrive at once the first may do, or lead to what covers the others. Of a round by topological
+/// order the least.
 const FEW: usize = 64;
 
 impl WaitingList {
