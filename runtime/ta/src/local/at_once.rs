@@ -2,14 +2,14 @@
 
 use super::{
     batch::{LocalBatch, LocalExpansion, in_order},
-    crew::LocalContext,
+    crew::{LocalContext, LocalWorker},
     refusal::LocalSearchError,
     search::{FEW, LocalGoalPath, LocalPause, LocalSearch, LocalWorkMemory},
 };
 use crate::search::report::SearchProgress;
 
 /// States that are taken at once.
-const AT_ONCE: usize = 512;
+const AT_ONCE: usize = 1024;
 
 impl LocalSearch<'_, '_> {
     /// Takes many states and has all threads compute what they lead to, which is then stored as one thread would.
@@ -32,10 +32,24 @@ impl LocalSearch<'_, '_> {
         };
         crew.expand(&context, round, &worker.zone, batches);
         in_order(batches, order);
+        let pause = self.store_round(worker, batches, round, order, go_on);
+        crew.write(batches, &mut self.zones);
+        pause
+    }
+
+    /// Stores what a round led to, in order.
+    fn store_round(
+        &mut self,
+        worker: &mut LocalWorker,
+        batches: &mut [LocalBatch],
+        round: &[u32],
+        order: &[(usize, usize)],
+        go_on: &dyn Fn(&SearchProgress) -> bool,
+    ) -> Result<Option<LocalPause>, LocalSearchError> {
         let first = self.store.nodes.len() as u32;
         // One thread takes a few that still wait at a time, and looks up in between: so does this.
         let mut end = 0;
-        for (done, &(batch, at)) in order.iter().enumerate() {
+        for (done, &(number, at)) in order.iter().enumerate() {
             if done == end {
                 let pause = if done > 0 { self.pause(usize::MAX, true, go_on) } else { None };
                 let few = self.few_that_wait(&round[done..]);
@@ -45,7 +59,7 @@ impl LocalSearch<'_, '_> {
                 }
                 end = few.map_or(round.len(), |few| done + few);
             }
-            let batch = &mut batches[batch];
+            let batch = &mut batches[number];
             let successors = batch.first_successor(at)..batch.nodes[at].end;
             let LocalExpansion { node, transitions, failure, .. } = &mut batch.nodes[at];
             let (node, transitions, failure) = (*node, *transitions, failure.take());
@@ -56,7 +70,7 @@ impl LocalSearch<'_, '_> {
                 self.visited += 1;
                 self.transitions += transitions;
                 for successor in successors {
-                    self.store_successor(node, batch, successor, first);
+                    self.store_successor(node, batch, successor, (number, first));
                 }
                 if let Some(failure) = failure {
                     return Err(self.led_to(node, failure));
@@ -72,12 +86,12 @@ impl LocalSearch<'_, '_> {
         nodes.iter().enumerate().filter(waits).nth(FEW - 1).map(|(at, _)| at + 1)
     }
 
-    fn store_successor(&mut self, node: u32, batch: &LocalBatch, successor: usize, first: u32) {
+    fn store_successor(&mut self, node: u32, batch: &LocalBatch, successor: usize, compared: (usize, u32)) {
         let number = batch.successors[successor].number;
         self.met.clear();
         self.met.extend_from_slice(batch.hits(successor));
         self.hit(LocalGoalPath { node, last: Some(number) });
-        let Some(arrival) = batch.arrival(successor, self.store.layout.words, first) else { return };
+        let Some(arrival) = batch.arrival(successor, self.store.layout.words, compared) else { return };
         if let Some((new, true)) = self.arrive(arrival, node, number)
             && self.left > 0
         {

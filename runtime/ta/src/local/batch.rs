@@ -8,7 +8,7 @@ use super::{
     crew::LocalContext,
     refusal::LocalSearchError,
     space::LocalWorkspace,
-    waiting::{PackedZone, append_narrow},
+    waiting::{PackedZone, ZoneSlab, append_narrow},
     zone::{self, LocalLuBounds, LocalZoneBound},
 };
 use crate::search::{batch::PendingZone, store::NIL, waiting::level};
@@ -157,7 +157,8 @@ impl LocalBatch {
         let before = self.last_of(hash, packed);
         if let Some(by) = self.simulating(c, w, before) {
             // Of one node all successors are stored, or none.
-            if by != node && self.relied_on.last() != Some(&by) {
+            let first = self.nodes.last().map_or(0, |n| n.relied_on);
+            if by != node && !self.relied_on[first..].contains(&by) {
                 self.relied_on.push(by);
             }
             return;
@@ -278,6 +279,11 @@ impl LocalBatch {
         &self.hits[before..self.successors[successor].hits]
     }
 
+    /// Writes the zones that are waited with to where they wait.
+    pub(super) fn write(&self, slab: &mut ZoneSlab<i16>) {
+        slab.write(&self.narrow, self.bounds);
+    }
+
     /// The goals that the discrete state of a successor meets, which was not there when the round began.
     pub(super) fn met(&self, successor: usize) -> &[usize] {
         self.successors[successor].found.as_ref().map_or(&[], |f| &self.met[f.met.0..f.met.1])
@@ -285,7 +291,12 @@ impl LocalBatch {
 
     /// What is to be stored of a successor, whose packed state has so many words; `None`: a stored one
     /// simulates it. The nodes before `compared` were there when the round began.
-    pub(super) fn arrival(&self, successor: usize, words: usize, compared: u32) -> Option<LocalArrival<'_>> {
+    pub(super) fn arrival(
+        &self,
+        successor: usize,
+        words: usize,
+        (worker, compared): (usize, u32),
+    ) -> Option<LocalArrival<'_>> {
         let f = self.successors[successor].found.as_ref()?;
         let dim = f.clocks + 1;
         Some(LocalArrival {
@@ -301,7 +312,7 @@ impl LocalBatch {
             },
             lu: &self.lu[f.lu..f.lu + f.clocks],
             zone: match f.zone {
-                ZoneSpan::Narrow(at) => PackedZone::Narrow(&self.narrow[at..at + self.bounds]),
+                ZoneSpan::Narrow(at) => PackedZone::Unwritten { worker, at },
                 ZoneSpan::Wide(at) => PackedZone::Wide(&self.wide[at..at + self.bounds]),
             },
             compared,

@@ -9,7 +9,7 @@ use super::{
     batch::LocalBatch,
     refusal::LocalSearchError,
     space::{LocalStateSpace, LocalWorkspace, LocalZoneFilter},
-    waiting::WaitingZones,
+    waiting::{WaitingZones, ZoneSlab},
     zone::{self, LocalLuBounds, LocalZone, LocalZoneBound},
 };
 use crate::{
@@ -26,6 +26,8 @@ use crate::{
 
 /// States that one thread expands in one go.
 const CHUNK: usize = 32;
+/// Fewer zones are written before another thread is awake.
+const FEW: usize = 64;
 
 /// What an expansion may look at.
 pub(super) struct LocalContext<'a, 'm, 'p> {
@@ -207,5 +209,18 @@ impl LocalCrew {
             }
         });
         self.threads.share(workers, round.chunks(CHUNK).enumerate(), &|| true);
+    }
+
+    /// Writes the zones of the batches that are waited with: each worker its own, which it has at hand.
+    pub(super) fn write(&mut self, batches: &[LocalBatch], zones: &mut WaitingZones) {
+        let few = zones.unwritten() < FEW;
+        let all = zones.of_workers().iter_mut().zip(batches);
+        let write = |(slot, batch): (&mut ZoneSlab<i16>, &LocalBatch)| {
+            // On the stack, as a batch is.
+            let mut slab = std::mem::take(slot);
+            batch.write(&mut slab);
+            *slot = slab;
+        };
+        if few { all.for_each(write) } else { self.threads.each(all, &write) }
     }
 }

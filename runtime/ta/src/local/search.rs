@@ -150,7 +150,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             open: vec![true; goals.len()],
             left: goals.len(),
             store: PassedList::new(layout, 0, false),
-            zones: WaitingZones::default(),
+            zones: WaitingZones::new(if options.threads > 1 { options.threads } else { 0 }),
             waiting: WaitingList::new(options.order, options.seed),
             levels: levels(model),
             packed: Vec::new(),

@@ -7,28 +7,40 @@ use super::zone::{INF, LocalZone, LocalZoneBound};
 use crate::search::store::NIL;
 
 /// By node, the zone that it waits with.
-#[derive(Default)]
 pub(super) struct WaitingZones {
-    /// By node: its zone's place, as [`ZonePlace`] packs it, or [`NIL`].
+    /// By node: its zone's place, as [`pack`](Self::pack) makes it, or [`NIL`].
     places: Vec<u32>,
-    /// How many wait.
-    count: usize,
-    narrow: ZoneSlab<i16>,
+    /// A slab for zones that are written at once, then one for each worker.
+    narrow: Vec<ZoneSlab<i16>>,
     wide: ZoneSlab<LocalZoneBound>,
+    /// How many wait, narrow and wide, and the most that ever did.
+    count: [usize; 2],
+    most: [usize; 2],
+    /// How many bounds a zone has.
+    bounds: usize,
 }
 
 /// Zones of one length, end to end.
 #[derive(Default)]
-struct ZoneSlab<N> {
+pub(super) struct ZoneSlab<N> {
     bounds: Vec<N>,
+    /// How many it has given numbers to.
+    zones: u32,
     /// The numbers of zones that nobody waits with.
     free: Vec<u32>,
+    /// Numbers of zones that are not written yet, and where in the worker's batch they begin.
+    unwritten: Vec<(u32, usize)>,
 }
 
 /// A zone, in half the room where its bounds let it.
 pub(super) enum PackedZone<'a> {
     Narrow(&'a [i16]),
     Wide(&'a [LocalZoneBound]),
+    /// Narrow, in the batch of this worker from there on, which writes it [itself](ZoneSlab::write).
+    Unwritten {
+        worker: usize,
+        at: usize,
+    },
 }
 
 impl<'a> PackedZone<'a> {
@@ -42,62 +54,120 @@ impl<'a> PackedZone<'a> {
 
 /// In which slab a zone is, and its number there.
 enum ZonePlace {
-    Narrow(u32),
+    Narrow { slab: usize, number: u32 },
     Wide(u32),
 }
 
 impl ZonePlace {
     const WIDE: u32 = 1 << 31;
 
-    fn pack(&self) -> u32 {
+    /// Where zones of its kind are counted.
+    fn kind(&self) -> usize {
         match self {
-            Self::Narrow(n) => *n,
-            Self::Wide(n) => n | Self::WIDE,
+            Self::Narrow { .. } => 0,
+            Self::Wide(_) => 1,
         }
-    }
-
-    fn unpack(packed: u32) -> Self {
-        if packed & Self::WIDE == 0 { Self::Narrow(packed) } else { Self::Wide(packed & !Self::WIDE) }
     }
 }
 
 impl<N: Copy + Default> ZoneSlab<N> {
-    /// Room for a zone: its number, and where to write it.
-    fn room(&mut self, length: usize) -> (u32, &mut [N]) {
-        let number = self.free.pop().unwrap_or_else(|| {
-            let next = self.bounds.len() / length.max(1);
-            self.bounds.resize(self.bounds.len() + length, N::default());
-            next as u32
-        });
-        (number, &mut self.bounds[number as usize * length..][..length])
+    /// The number of a zone that is to be written.
+    fn number(&mut self) -> u32 {
+        self.free.pop().unwrap_or_else(|| {
+            self.zones += 1;
+            self.zones - 1
+        })
+    }
+
+    /// Where to write a zone.
+    fn room(&mut self, number: u32, length: usize) -> &mut [N] {
+        let at = number as usize * length;
+        if self.bounds.len() < at + length {
+            self.bounds.resize(at + length, N::default());
+        }
+        &mut self.bounds[at..at + length]
+    }
+
+    /// Writes what is unwritten, from the batch that it stands in.
+    pub(super) fn write(&mut self, batch: &[N], length: usize) {
+        let mut unwritten = std::mem::take(&mut self.unwritten);
+        // In order: of two with one number the last is the right one.
+        for (number, at) in unwritten.drain(..) {
+            self.room(number, length).copy_from_slice(&batch[at..at + length]);
+        }
+        self.unwritten = unwritten;
     }
 
     fn zone(&self, number: u32, length: usize) -> &[N] {
         &self.bounds[number as usize * length..][..length]
     }
-
-    fn bytes(&self) -> usize {
-        size_of_val(self.bounds.as_slice())
-    }
 }
 
 impl WaitingZones {
+    /// For so many workers that write zones themselves.
+    pub(super) fn new(workers: usize) -> Self {
+        Self {
+            places: Vec::new(),
+            narrow: (0..=workers).map(|_| ZoneSlab::default()).collect(),
+            wide: ZoneSlab::default(),
+            count: [0; 2],
+            most: [0; 2],
+            bounds: 0,
+        }
+    }
+
+    /// The slabs of the workers.
+    pub(super) fn of_workers(&mut self) -> &mut [ZoneSlab<i16>] {
+        &mut self.narrow[1..]
+    }
+
+    /// How many zones are to be written.
+    pub(super) fn unwritten(&self) -> usize {
+        self.narrow.iter().map(|slab| slab.unwritten.len()).sum()
+    }
+
+    /// INVARIANT: budgets of memory keep all numbers of zones far below 2³¹.
+    fn pack(&self, place: &ZonePlace) -> u32 {
+        match place {
+            ZonePlace::Narrow { slab, number } => number * self.narrow.len() as u32 + *slab as u32,
+            ZonePlace::Wide(number) => number | ZonePlace::WIDE,
+        }
+    }
+
+    fn unpack(&self, packed: u32) -> ZonePlace {
+        let slabs = self.narrow.len() as u32;
+        match packed & ZonePlace::WIDE {
+            0 => ZonePlace::Narrow { slab: (packed % slabs) as usize, number: packed / slabs },
+            _ => ZonePlace::Wide(packed & !ZonePlace::WIDE),
+        }
+    }
+
     /// The next node waits with this zone.
     pub(super) fn push(&mut self, zone: PackedZone) {
         let place = match zone {
             PackedZone::Narrow(bounds) => {
-                let (number, room) = self.narrow.room(bounds.len());
-                room.copy_from_slice(bounds);
-                ZonePlace::Narrow(number)
+                self.bounds = bounds.len();
+                let number = self.narrow[0].number();
+                self.narrow[0].room(number, bounds.len()).copy_from_slice(bounds);
+                ZonePlace::Narrow { slab: 0, number }
+            }
+            PackedZone::Unwritten { worker, at } => {
+                let slab = &mut self.narrow[1 + worker];
+                let number = slab.number();
+                slab.unwritten.push((number, at));
+                ZonePlace::Narrow { slab: 1 + worker, number }
             }
             PackedZone::Wide(bounds) => {
-                let (number, room) = self.wide.room(bounds.len());
-                room.copy_from_slice(bounds);
+                self.bounds = bounds.len();
+                let number = self.wide.number();
+                self.wide.room(number, bounds.len()).copy_from_slice(bounds);
                 ZonePlace::Wide(number)
             }
         };
-        self.places.push(place.pack());
-        self.count += 1;
+        self.places.push(self.pack(&place));
+        let kind = place.kind();
+        self.count[kind] += 1;
+        self.most[kind] = self.most[kind].max(self.count[kind]);
     }
 
     /// Makes `zone`, which is one of the same network, that of the node, which waits no longer; `false`: it did not wait.
@@ -114,8 +184,10 @@ impl WaitingZones {
             return false;
         }
         let bounds = zone.bounds_mut();
-        match ZonePlace::unpack(place) {
-            ZonePlace::Narrow(number) => widen(self.narrow.zone(number, bounds.len()), bounds),
+        match self.unpack(place) {
+            ZonePlace::Narrow { slab, number } => {
+                widen(self.narrow[slab].zone(number, bounds.len()), bounds);
+            }
             ZonePlace::Wide(number) => bounds.copy_from_slice(self.wide.zone(number, bounds.len())),
         }
         true
@@ -127,17 +199,20 @@ impl WaitingZones {
         if place == NIL {
             return false;
         }
-        self.count -= 1;
-        match ZonePlace::unpack(place) {
-            ZonePlace::Narrow(number) => self.narrow.free.push(number),
+        let place = self.unpack(place);
+        self.count[place.kind()] -= 1;
+        match place {
+            ZonePlace::Narrow { slab, number } => self.narrow[slab].free.push(number),
             ZonePlace::Wide(number) => self.wide.free.push(number),
         }
         true
     }
 
-    /// With a place in a list for each that waits.
+    /// The memory for as many zones as ever waited, with a place in a list for each that waits. It does not depend on the workers.
     pub(super) fn bytes(&self) -> usize {
-        self.narrow.bytes() + self.wide.bytes() + (self.places.len() + self.count) * size_of::<u32>()
+        let [narrow, wide] = self.most;
+        (narrow * size_of::<i16>() + wide * size_of::<LocalZoneBound>()) * self.bounds
+            + (self.places.len() + self.count.iter().sum::<usize>()) * size_of::<u32>()
     }
 }
 
@@ -190,16 +265,30 @@ mod tests {
         /// Whatever is pushed, taken and forgotten: each node comes back with its own zone, once.
         #[test]
         fn zones_come_back_as_they_were(all in prop::collection::vec((prop::collection::vec(bound(), 16), 0usize..8), 1..40)) {
-            let mut waiting = WaitingZones::default();
+            let mut waiting = WaitingZones::new(2);
+            let mut batches = [Vec::new(), Vec::new()];
             let mut here: Vec<Option<LocalZone>> = Vec::new();
             let mut zone = LocalZone::start(1, 3);
             for (bounds, old) in all {
                 zone.bounds_mut().copy_from_slice(&bounds);
-                waiting.push(PackedZone::of(&zone, &mut Vec::new()));
+                let at = batches[old % 2].len();
+                if old > 2 && append_narrow(&bounds, &mut batches[old % 2]) {
+                    waiting.push(PackedZone::Unwritten { worker: old % 2, at });
+                } else {
+                    waiting.push(PackedZone::of(&zone, &mut Vec::new()));
+                }
+                // Some are left before they are written.
+                let written = old < 5;
+                if written {
+                    waiting.of_workers().iter_mut().zip(&mut batches).for_each(|(slab, batch)| {
+                        slab.write(batch, 16);
+                        batch.clear();
+                    });
+                }
                 here.push(Some(zone.clone()));
                 let old = old.min(here.len() - 1);
                 let known = here[old].take();
-                if old % 2 == 0 {
+                if written && old % 2 == 0 {
                     prop_assert_eq!(waiting.take(old as u32, &mut zone), known.is_some());
                     if let Some(known) = known {
                         prop_assert_eq!(&zone, &known);
@@ -208,6 +297,7 @@ mod tests {
                     waiting.forget(old as u32);
                 }
             }
+            waiting.of_workers().iter_mut().zip(&batches).for_each(|(slab, batch)| slab.write(batch, 16));
             for (node, known) in here.into_iter().enumerate() {
                 let taken = waiting.take(node as u32, &mut zone);
                 prop_assert_eq!(taken.then(|| zone.clone()), known);

@@ -52,6 +52,16 @@ impl CrewThreads {
         })
     }
 
+    /// Does each of the pieces, of which there are no more than threads, on a thread of its own: the first on the caller's.
+    pub(crate) fn each<P: Send>(&mut self, mut pieces: impl Iterator<Item = P>, work: &(impl Fn(P) + Sync)) {
+        let Some(pool) = self.pool() else { return pieces.for_each(work) };
+        let mine = pieces.next();
+        pool.in_place_scope(|scope| {
+            pieces.for_each(|piece| scope.spawn(move |_| work(piece)));
+            mine.into_iter().for_each(work);
+        });
+    }
+
     /// Where there can be no more threads, the caller's does all.
     fn pool(&mut self) -> Option<&rayon::ThreadPool> {
         if self.pool.is_none() && self.others > 0 {
