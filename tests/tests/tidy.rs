@@ -15,7 +15,7 @@ const LONG: &[(&str, usize)] = &[
     ("compiler/model/src/check/value/expr.rs", 581),
     ("compiler/model/src/lint/applicable.rs", 505),
     ("compiler/syntax/src/ast.rs", 672),
-    ("compiler/syntax/tests/format.rs", 764),
+    ("compiler/syntax/tests/format.rs", 708),
     ("compiler/tests/lower.rs", 1035),
     ("runtime/harness/tests/programs.rs", 557),
     ("runtime/sut/tests/environment.rs", 541),
