@@ -59,9 +59,7 @@ impl TemporalJunction {
             Self::Implies => (truth, !truth),
         }
     }
-}
 
-impl TemporalJunction {
     /// As it is written.
     #[must_use]
     pub fn word(self) -> &'static str {

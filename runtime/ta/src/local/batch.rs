@@ -229,10 +229,7 @@ impl LocalBatch {
         let entries = (w.lu.len() + 1).pow(2);
         while last != NIL {
             let f = self.successors[last as usize].found.as_ref()?;
-            let old = match f.together {
-                PendingZone::Stored(at) => c.store.zone_at(at, entries),
-                PendingZone::New { at, .. } => &self.together[at as usize..at as usize + entries],
-            };
+            let old = f.together.entries(c.store, &self.together, entries);
             if zone::is_simulated(&w.together, old, &w.lu) {
                 return Some(f.node);
             }

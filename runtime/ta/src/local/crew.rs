@@ -15,6 +15,7 @@ use super::{
 use crate::{
     network::{
         error::ModelError,
+        model::CompiledNetwork,
         semantics::{EnumerationScratch, FiringOrError, TransitionFiring},
     },
     search::{
@@ -42,7 +43,7 @@ pub(super) struct LocalContext<'a, 'm, 'p> {
 }
 
 impl LocalContext<'_, '_, '_> {
-    /// Adds the open goals that the state in the workspace meets: all have one time in it.
+    /// Adds the open goals that the state in the workspace meets.
     ///
     /// # Errors
     /// A condition that cannot be evaluated there.
@@ -50,9 +51,7 @@ impl LocalContext<'_, '_, '_> {
         if self.open.is_empty() {
             return Ok(());
         }
-        let state = &mut w.effect.target;
-        let settled = !self.space.model.any_committed(state);
-        self.goals.states(state, None, &mut w.stack, self.space.model, settled, self.open, met)
+        met_by_state(self.space.model, self.goals, self.open, (&mut w.effect.target, &mut w.stack), met)
     }
 }
 
@@ -179,6 +178,21 @@ pub(super) fn met_by_edges(
         let last = model.pairs.then(|| model.last_edge_at(m));
         goals.taken(edge, before, last, met);
     }
+}
+
+/// The open goals that a discrete state meets: all have one time in it.
+///
+/// # Errors
+/// A condition that cannot be evaluated there.
+pub(super) fn met_by_state(
+    model: &CompiledNetwork,
+    goals: &CompiledGoals,
+    open: &[bool],
+    (state, stack): (&mut [i64], &mut Vec<i64>),
+    met: &mut Vec<usize>,
+) -> Result<(), ModelError> {
+    let settled = !model.any_committed(state);
+    goals.states(state, None, stack, model, settled, open, met)
 }
 
 impl LocalCrew {

@@ -4,7 +4,7 @@ use std::{rc::Rc, sync::Arc};
 
 use super::{
     batch::{ArrivedZone, LocalArrival, LocalBatch},
-    crew::{LocalCrew, LocalWorker, is_simulated, met_by_edges},
+    crew::{LocalCrew, LocalWorker, is_simulated, met_by_edges, met_by_state},
     order,
     refusal::{LocalSearchError, NotApplicableError},
     space::{LocalStateSpace, LocalWorkspace},
@@ -435,13 +435,11 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         any
     }
 
-    /// Looks at the goals that a new discrete state meets: all have one time in it.
+    /// Looks at the goals that a new discrete state meets.
     fn look(&mut self, state: &mut [i64], stack: &mut Vec<i64>, node: u32) -> Result<(), LocalSearchError> {
         self.met.clear();
-        let model = self.space.model;
-        let settled = !model.any_committed(state);
-        let states = self.compiled.states(state, None, stack, model, settled, &self.open, &mut self.met);
-        states.map_err(SearchError::from)?;
+        met_by_state(self.space.model, &self.compiled, &self.open, (state, stack), &mut self.met)
+            .map_err(SearchError::from)?;
         self.hit(LocalGoalPath { node, last: None });
         Ok(())
     }

@@ -57,6 +57,19 @@ impl PendingZone {
             None => Self::New { at: at as u32, hash },
         }
     }
+
+    /// Its entries, which are so many: in the store, or in the `zones` of the batch.
+    pub(crate) fn entries<'a, N: DbmNumber>(
+        self,
+        store: &'a PassedList<N>,
+        zones: &'a [N],
+        count: usize,
+    ) -> &'a [N] {
+        match self {
+            Self::Stored(at) => store.zone_at(at, count),
+            Self::New { at, .. } => &zones[at as usize..at as usize + count],
+        }
+    }
 }
 
 impl PendingState {
@@ -191,10 +204,7 @@ impl<N: DbmNumber> ExpansionBatch<N> {
 
     /// Its zone, which may be a stored one.
     pub(crate) fn zone<'a>(&'a self, item: &PendingState, store: &'a PassedList<N>) -> &'a [N] {
-        match item.zone {
-            PendingZone::Stored(at) => store.zone_at(at, item.entries()),
-            PendingZone::New { at, .. } => &self.zones[at as usize..at as usize + item.entries()],
-        }
+        item.zone.entries(store, &self.zones, item.entries())
     }
 
     /// Where its zone is stored now.
