@@ -21,7 +21,7 @@ impl LocalSearch<'_, '_> {
         let LocalWorkMemory { worker, crew: Some(crew), batches, round, order } = memory else {
             return Ok(None);
         };
-        self.waiting.take(&self.store.nodes, AT_ONCE, round);
+        self.waiting.take(&self.store.covered, AT_ONCE, round);
         let context = LocalContext {
             space: &self.space,
             store: &self.store,
@@ -32,7 +32,9 @@ impl LocalSearch<'_, '_> {
         };
         crew.expand(&context, round, &worker.zone, batches);
         in_order(batches, order);
+        self.store.begin_round();
         let pause = self.store_round(worker, batches, round, order, go_on);
+        self.store.end_round(crew.threads());
         crew.write(batches, &mut self.zones);
         pause
     }
@@ -82,7 +84,7 @@ impl LocalSearch<'_, '_> {
 
     /// How many of these nodes have [`FEW`] that are not driven out, at the least; `None`: all have fewer.
     fn few_that_wait(&self, nodes: &[u32]) -> Option<usize> {
-        let waits = |(_, n): &(usize, &u32)| !self.store.nodes[**n as usize].covered;
+        let waits = |(_, n): &(usize, &u32)| !self.store.covered.has(**n);
         nodes.iter().enumerate().filter(waits).nth(FEW - 1).map(|(at, _)| at + 1)
     }
 

@@ -11,7 +11,11 @@ use super::{
     waiting::{PackedZone, ZoneSlab, append_narrow},
     zone::{self, LocalLuBounds, LocalZoneBound},
 };
-use crate::search::{batch::PendingZone, store::NIL, waiting::level};
+use crate::search::{
+    batch::PendingZone,
+    store::{NIL, PackedState},
+    waiting::level,
+};
 
 /// A successor that something comes of: it meets goals by its transition, or nothing stored simulates it.
 pub(super) struct LocalSuccessor {
@@ -143,18 +147,11 @@ impl LocalBatch {
         self.hits.push(goal);
     }
 
-    /// Keeps what is in the workspace, unless a successor that was found before simulates it; its discrete state is `known`, or not yet
-    /// stored, packed like this with its hash.
-    pub(super) fn found(
-        &mut self,
-        c: &LocalContext,
-        w: &mut LocalWorkspace,
-        known: Option<u32>,
-        (hash, packed): (u64, &[u64]),
-        driven_out: &[u32],
-    ) {
+    /// Keeps what is in the workspace, looked up, unless a successor that was found before simulates it.
+    pub(super) fn found(&mut self, c: &LocalContext, w: &mut LocalWorkspace, driven_out: &[u32]) {
         let node = self.nodes.len() as u32;
-        let before = self.last_of(hash, packed);
+        let PackedState { hash, known, .. } = w.packed;
+        let before = self.last_of(hash, &w.packed.words);
         if let Some(by) = self.simulating(c, w, before) {
             // Of one node all successors are stored, or none.
             let first = self.nodes.last().map_or(0, |n| n.relied_on);
@@ -199,7 +196,7 @@ impl LocalBatch {
             zone,
             driven_out: (first, self.driven_out.len()),
         });
-        self.words.extend_from_slice(packed);
+        self.words.extend_from_slice(&w.packed.words);
         self.lu.extend_from_slice(&w.lu);
     }
 

@@ -20,7 +20,7 @@ use crate::{
     },
     search::{
         goals::CompiledGoals,
-        store::{NIL, PassedList, hash_words},
+        store::{NIL, PassedList},
         threads::CrewThreads,
     },
 };
@@ -63,7 +63,6 @@ pub(super) struct LocalWorker {
     /// The state whose successors are computed.
     pub state: Vec<i64>,
     pub zone: LocalZone,
-    packed: Vec<u64>,
     driven_out: Vec<u32>,
 }
 
@@ -82,6 +81,7 @@ impl LocalWorker {
     pub(super) fn successors(
         &mut self,
         space: &LocalStateSpace,
+        store: Option<&PassedList<LocalZoneBound>>,
         mut f: impl FnMut(&mut LocalWorkspace, &[i64], &TransitionFiring, u32) -> Result<(), LocalSearchError>,
     ) -> Result<(), LocalSearchError> {
         let Self { work, scratch, state, zone, .. } = self;
@@ -89,7 +89,7 @@ impl LocalWorker {
         let may = LocalZoneFilter { zone, processes: &space.processes };
         let (mut number, mut end) = (0, Ok(()));
         let _ = space.model.enumerate(state, &may, scratch, &mut |found| {
-            let next = space.found(work, &before, zone, &found);
+            let next = space.found(work, &before, zone, &found, store);
             end = match (next, &found) {
                 (Ok(true), FiringOrError::Firing(firing)) => {
                     number += 1;
@@ -109,9 +109,8 @@ impl LocalWorker {
         c.zones.read(node, &mut self.zone);
         c.store.layout.unpack(c.store.packed(c.store.nodes[node as usize].discrete), &mut self.state);
         let mut transitions = 0;
-        let mut packed = std::mem::take(&mut self.packed);
         let mut driven_out = std::mem::take(&mut self.driven_out);
-        let end = self.successors(c.space, |w, before, firing, number| {
+        let end = self.successors(c.space, Some(c.store), |w, before, firing, number| {
             transitions += 1;
             if !c.open.is_empty() {
                 met_by_edges(c.space, c.goals, before, firing, &mut |goal| {
@@ -120,20 +119,17 @@ impl LocalWorker {
                     }
                 });
             }
-            c.store.layout.pack(&w.effect.target, &mut packed);
-            let hash = hash_words(&packed);
-            let known = c.store.find(hash, &packed);
             driven_out.clear();
-            let simulated = known.is_some_and(|discrete| {
+            let simulated = w.packed.known.is_some_and(|discrete| {
                 is_simulated(c.store, discrete, 0, (&w.together, &w.lu), &mut driven_out)
             });
             if !simulated {
-                batch.found(c, w, known, (hash, &packed), &driven_out);
+                batch.found(c, w, &driven_out);
             }
             batch.end_successor(number);
             Ok(())
         });
-        (self.packed, self.driven_out) = (packed, driven_out);
+        self.driven_out = driven_out;
         batch.end_node(node, transitions, end.err());
     }
 }
@@ -200,6 +196,10 @@ impl LocalCrew {
         Self { workers: (0..threads).map(|_| None).collect(), threads: CrewThreads::new(threads) }
     }
 
+    pub(super) fn threads(&mut self) -> &mut CrewThreads {
+        &mut self.threads
+    }
+
     /// Computes what these states lead to, each worker into a batch of its own. `like`: a zone of the network.
     pub(super) fn expand(
         &mut self,
@@ -217,6 +217,9 @@ impl LocalCrew {
                 // On the stack, since those of other workers stand beside its slot.
                 let mut batch = std::mem::take(slot);
                 batch.begin_chunk(number);
+                // Synchronised zones are looked at by those that come to them, later.
+                c.store.prefetch(nodes, 0);
+                c.zones.prefetch(nodes);
                 // On after a failure, too: what fails may have been driven out when its turn comes.
                 nodes.iter().for_each(|&node| worker.expand(c, node, &mut batch));
                 *slot = batch;

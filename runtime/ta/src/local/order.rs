@@ -155,7 +155,7 @@ fn advance(
     let mut end = None;
     let may = LocalZoneFilter { zone, processes: &space.processes };
     let _ = space.model.enumerate(state, &may, scratch, &mut |found| {
-        match space.found(w, &before, zone, &found) {
+        match space.found(w, &before, zone, &found, None) {
             Ok(false) => return ControlFlow::Continue(()),
             Ok(true) if left > 0 => {
                 left -= 1;

@@ -210,7 +210,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             self.insert(work, NIL, 0)?;
         }
         loop {
-            self.waiting.settle(&self.store.nodes);
+            self.waiting.settle();
             if let Some(pause) = self.pause(until, false, go_on) {
                 return Ok(pause);
             }
@@ -226,7 +226,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
                 continue;
             }
             let LocalWorkMemory { worker, round, .. } = memory;
-            self.waiting.take(&self.store.nodes, FEW, round);
+            self.waiting.take(&self.store.covered, FEW, round);
             for &id in &*round {
                 self.expand_stored(id, worker)?;
             }
@@ -240,7 +240,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         more: bool,
         go_on: &dyn Fn(&SearchProgress) -> bool,
     ) -> Option<LocalPause> {
-        let empty = !more && self.waiting.is_empty(&self.store.nodes, None);
+        let empty = !more && self.waiting.is_empty(&self.store.covered, None);
         if (!self.goals.is_empty() && self.left == 0) || empty {
             return Some(LocalPause::Ended);
         }
@@ -297,7 +297,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             discrete_states: self.store.discrete_states(),
             transitions: self.transitions,
             peak_bytes: self.peak,
-            complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes, None),
+            complete: exhausted.is_none() && self.waiting.is_empty(&self.store.covered, None),
             global_because: None,
             chosen: None,
             widest: exhausted.and_then(|_| WidestVariable::of(self.space.model, &self.store.extremes())),
@@ -329,7 +329,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         self.visited += 1;
         // INVARIANT: the space is not changed by what is stored.
         let space = Arc::clone(&self.space);
-        let end = worker.successors(&space, |w, before, firing, number| {
+        let end = worker.successors(&space, None, |w, before, firing, number| {
             self.transitions += 1;
             if self.left > 0 {
                 self.met.clear();
@@ -386,7 +386,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
     pub(super) fn arrive(&mut self, a: LocalArrival, parent: u32, number: u32) -> Option<(u32, bool)> {
         let since = (a.compared as usize) < self.store.nodes.len();
         let known = match a.discrete {
-            NIL if since => self.store.find(a.hash, a.packed),
+            NIL if since => self.store.find_recent(a.hash, a.packed),
             NIL => None,
             discrete => Some(discrete),
         };
@@ -422,7 +422,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         let mut any = false;
         for &n in &self.driven_out {
             // One that came in between may have driven it out before.
-            if !self.store.nodes[n as usize].covered {
+            if !self.store.covered.has(n) {
                 self.waiting.covered(n);
                 self.store.cover(n);
                 self.zones.forget(n);

@@ -20,6 +20,7 @@ use crate::{
         model::CompiledNetwork,
         semantics::{ConstraintFilter, FiringOrError, TransitionEffect, TransitionFiring},
     },
+    search::store::{PackedState, PassedList},
     witness::error::SearchError,
     zone::constraint::DifferenceConstraint,
 };
@@ -51,6 +52,8 @@ pub(super) struct LocalWorkspace {
     pub clocks: Vec<u16>,
     pub lu: Vec<LocalLuBounds>,
     pub stack: Vec<i64>,
+    /// Its discrete state, looked up.
+    pub packed: PackedState,
     meeting: MeetingBounds,
     invariant: Vec<DifferenceConstraint>,
     passing: Vec<ClockBound>,
@@ -111,13 +114,14 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
         Ok(())
     }
 
-    /// Looks at a transition; whether it is one of the zone: then its effect is in `w`.
+    /// Looks at a transition; whether it is one of the zone: then its effect is in `w`, looked up in the store, if there is one.
     pub(super) fn found(
         &self,
         w: &mut LocalWorkspace,
         state: &[i64],
         zone: &LocalZone,
         found: &FiringOrError,
+        store: Option<&PassedList<LocalZoneBound>>,
     ) -> Result<bool, LocalSearchError> {
         let (FiringOrError::Firing(TransitionFiring { guard, .. }) | FiringOrError::Fault { guard, .. }) =
             found;
@@ -144,6 +148,9 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
                 return self.unless_met(w, zone, error);
             }
         }
+        if let Some(store) = store {
+            store.expect(&w.effect.target, &mut w.packed);
+        }
         self.negative(w, zone)?;
         if !self.enters(w, zone, firing)? {
             return Ok(false);
@@ -151,6 +158,9 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
         w.zone.restrict(zone, &w.meeting);
         // INVARIANT: somebody moves.
         w.zone.assign(&w.sets, usize::from(w.who[0]));
+        if let Some(store) = store {
+            store.look_up(&mut w.packed);
+        }
         let who = std::mem::take(&mut w.who);
         let met = self.enter(w, &who);
         w.who = who;

@@ -3,8 +3,10 @@
 //! Few of all states wait, but a whole zone of local times is large beside what is kept of a state for good. Nearly all bounds are
 //! small, so that a zone is kept in half the room wherever all of its bounds fit.
 
+use prefetch_index::prefetch_index;
+
 use super::zone::{INF, LocalZone, LocalZoneBound};
-use crate::search::store::NIL;
+use crate::search::store::{LINE, NIL};
 
 /// By node, the zone that it waits with.
 pub(super) struct WaitingZones {
@@ -191,6 +193,20 @@ impl WaitingZones {
             ZonePlace::Wide(number) => bounds.copy_from_slice(self.wide.zone(number, bounds.len())),
         }
         true
+    }
+
+    /// Has the processor fetch the zones of these nodes, unless they are wide, while it does other things.
+    pub(super) fn prefetch(&self, nodes: &[u32]) {
+        for &n in nodes {
+            let place = self.places[n as usize];
+            if place != NIL
+                && let ZonePlace::Narrow { slab, number } = self.unpack(place)
+            {
+                for at in (0..self.bounds).step_by(LINE / size_of::<i16>()) {
+                    prefetch_index(&self.narrow[slab].bounds, number as usize * self.bounds + at);
+                }
+            }
+        }
     }
 
     /// The node waits no longer; whether it did.

@@ -10,7 +10,7 @@ use crate::{
         monotone::{may_drive_out, no_worse},
         options::SubsumptionRelation,
         stepper::SymbolicSuccessor,
-        store::{NIL, hash_words},
+        store::{NIL, PackedState},
         waiting,
     },
     zone::{
@@ -156,7 +156,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         met
     }
 
-    /// A state to store, unless a stored one covers it.
+    /// A state to store, packed and looked up in `m`, unless a stored one covers it.
     pub(super) fn arrive(
         &self,
         m: &mut WorkerMemory<N>,
@@ -169,13 +169,10 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         if self.c.latest.is_some_and(|latest| arrival(zone) > latest) {
             return Ok(());
         }
-        let store = self.c.store;
         let subsumption = self.c.options.subsumption;
-        store.layout.pack(state, &mut m.packed);
         m.ranks.clear();
         m.ranks.extend(self.c.counters.iter().map(|counter| counter.rank(state[counter.place])));
-        let hash = hash_words(&m.packed);
-        let known = store.find(hash, &m.packed);
+        let known = m.packed.known;
         let simple = self.model.extrapolation.diagonals.is_none();
         if subsumption == SubsumptionRelation::Simulation
             && simple
@@ -208,7 +205,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         self.split(m, frame, zone);
         let pieces = std::mem::take(&mut m.pieces);
         for piece in &pieces {
-            self.offer(m, frame, state, piece, known, hash, (parent, via), batch);
+            self.offer(m, frame, state, piece, (parent, via), batch);
         }
         m.pieces = pieces;
         Ok(())
@@ -260,13 +257,12 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         frame: &ActiveClocks,
         state: &[i64],
         zone: &Dbm<N>,
-        known: Option<u32>,
-        hash: u64,
         (parent, via): (u32, u32),
         batch: &mut ExpansionBatch<N>,
     ) {
         let subsumption = self.c.options.subsumption;
         let dim = frame.dim();
+        let PackedState { hash, known, .. } = m.packed;
         let (place, first) = (batch.zones.len(), batch.covered.len());
         zone.store(&mut batch.zones);
         if let Some(discrete) = known {
@@ -297,7 +293,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
                 at = node.next;
             }
         }
-        batch.words.extend_from_slice(&m.packed);
+        batch.words.extend_from_slice(&m.packed.words);
         batch.ranks.extend_from_slice(&m.ranks);
         let zone = PendingZone::of(self.c.store, &mut batch.zones, place);
         batch.push(PendingState {

@@ -14,6 +14,9 @@ use crate::{
 /// States that one thread expands in one go.
 const CHUNK: usize = 16;
 
+/// Entries of a zone that are fetched ahead: the rest comes by itself, as they are read in order.
+const AHEAD: usize = 64;
+
 /// A worker for each thread.
 pub(super) struct ExpansionCrew<'m, 'p, N> {
     model: &'m CompiledNetwork<'p>,
@@ -35,6 +38,10 @@ impl<'m, 'p, N: DbmNumber> ExpansionCrew<'m, 'p, N> {
         self.workers[0].get_or_insert_with(|| Box::new(ExpansionWorker::new(self.model, self.clocks)))
     }
 
+    pub(super) fn threads(&mut self) -> &mut CrewThreads {
+        &mut self.threads
+    }
+
     /// Expands the states of a round, each worker into a batch of its own. `false`: the caller has ended it, and some were not expanded.
     pub(super) fn expand(
         &mut self,
@@ -51,6 +58,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionCrew<'m, 'p, N> {
                 let worker = worker.get_or_insert_with(|| Box::new(ExpansionWorker::new(model, clocks)));
                 // On the stack, since those of other workers stand beside its slot.
                 let mut batch = std::mem::take(slot);
+                context.store.prefetch(nodes, AHEAD);
                 let fault = nodes.iter().find_map(|&node| worker.expand(context, node, &mut batch).err());
                 batch.end_chunk(number, fault);
                 *slot = batch;

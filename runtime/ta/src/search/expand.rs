@@ -12,16 +12,16 @@ use crate::{
         covering::{covers, demands, subsumes},
         goals::CompiledGoals,
         monotone::{OneWayCounter, may_drive_out, no_worse},
-        options::SearchOptions,
+        options::{SearchOptions, SubsumptionRelation},
         probe::{ProbeFinding, ProbedState, StateProbe, widened},
         stepper::{SymbolicStepper, ZoneClocks},
-        store::{NIL, PassedList},
+        store::{NIL, PackedState, PassedList},
         waiting,
     },
     witness::error::SearchError,
     zone::{
         constraint::DifferenceConstraint,
-        dbm::{Dbm, DbmNumber},
+        dbm::{Dbm, DbmNumber, dominates},
         extrapolation::ActiveClocks,
     },
 };
@@ -71,7 +71,7 @@ pub(crate) struct ExpansionWorker<'m, 'p, N> {
 
 pub(super) struct WorkerMemory<N> {
     pub(super) stack: Vec<i64>,
-    pub(super) packed: Vec<u64>,
+    pub(super) packed: PackedState,
     pub(super) ranks: Vec<u32>,
     pub(super) bounds: Vec<N>,
     pub(super) flat: Vec<N>,
@@ -99,7 +99,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         let greatest = model.extrapolation.diagonals.as_ref().map_or(Vec::new(), |d| d.greatest.clone());
         let m = WorkerMemory {
             stack: Vec::new(),
-            packed: Vec::new(),
+            packed: PackedState::default(),
             ranks: Vec::new(),
             bounds: Vec::new(),
             flat: Vec::new(),
@@ -127,6 +127,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     ) -> Result<(), ModelError> {
         let (mut state, frame, mut zone) = self.stepper.initial()?;
         let visit = NodeExpansion { model: self.model, c, node: NIL, keep: true };
+        c.store.expect(&state, &mut self.m.packed);
         visit.arrive(&mut self.m, (&mut state, None), &frame, &mut zone, (NIL, 0), batch)
     }
 
@@ -234,28 +235,30 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         // Goals that wait until no location is committed were not asked in a committed state.
         let settled = !before.is_empty() && !visit.model.any_committed(before);
         let asked = settled.then_some(before.as_slice());
-        let result = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
-            let number = *via;
-            *via += 1;
-            batch.transitions += 1;
-            visit.taken(before, &s, number, batch);
-            // No time passes in a committed state: what follows it is found at once, and nothing is won by storing it. The cut at `AT_ONCE`
-            // depends on the node alone, never on the store, so that `retrace` makes it, too.
-            if visit.keep || *count > AT_ONCE || !visit.model.any_committed(s.state) {
-                // Who retraces has stored the state already.
-                if until.is_none()
-                    && let Err(error) =
-                        visit.arrive(m, (s.state, asked), s.frame, s.zone, (visit.node, number), batch)
-                {
+        let result =
+            self.stepper.each(&mut current.state, &current.frame, &current.zone, visit.c.store, |s| {
+                let number = *via;
+                *via += 1;
+                batch.transitions += 1;
+                visit.taken(before, &s, number, batch);
+                // No time passes in a committed state: what follows it is found at once, and nothing is won by storing it. The cut at `AT_ONCE`
+                // depends on the node alone, never on the store, so that `retrace` makes it, too.
+                if visit.keep || *count > AT_ONCE || !visit.model.any_committed(s.state) {
+                    std::mem::swap(&mut m.packed, s.packed);
+                    // Who retraces has stored the state already.
+                    if until.is_none()
+                        && let Err(error) =
+                            visit.arrive(m, (s.state, asked), s.frame, s.zone, (visit.node, number), batch)
+                    {
+                        fault = Some(error);
+                        return ControlFlow::Break(());
+                    }
+                } else if let Err(error) = visit.pass(m, locals, count, s, (at, number), batch) {
                     fault = Some(error);
                     return ControlFlow::Break(());
                 }
-            } else if let Err(error) = visit.pass(m, locals, count, s, (at, number), batch) {
-                fault = Some(error);
-                return ControlFlow::Break(());
-            }
-            if until == Some(number) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
+                if until == Some(number) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
         result.and(fault.map_or(Ok(()), Err))
     }
 
@@ -295,17 +298,17 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             steps.push(self.locals[at].from);
         }
         for (at, number) in steps.into_iter().rev() {
-            out.push(self.transition(at, number).ok_or_else(lost)?);
+            out.push(self.transition(c.store, at, number).ok_or_else(lost)?);
         }
         Ok(())
     }
 
     /// A local state's transition of this number.
-    fn transition(&mut self, at: usize, number: u32) -> Option<PathTransition> {
+    fn transition(&mut self, store: &PassedList<N>, at: usize, number: u32) -> Option<PathTransition> {
         let mut current = std::mem::replace(&mut self.locals[at], ExpansionState::empty());
         let mut found = None;
         let side = self.side(&current.zone);
-        let _ = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
+        let _ = self.stepper.each(&mut current.state, &current.frame, &current.zone, store, |s| {
             if s.number < number {
                 return ControlFlow::Continue(());
             }
@@ -349,6 +352,12 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         // The newest node stands first: what was stored before the round was compared when the state was expanded.
         if head == NIL || head < first {
             return Some(&self.m.covers);
+        }
+        // Mostly the newest includes it: then nothing else need be known.
+        let inclusion = subsumption != SubsumptionRelation::Equality;
+        let newest = store.zone(&store.nodes[head as usize], dim);
+        if inclusion && no_worse(store.ranks(head), ranks) && dominates(newest, zone) {
+            return None;
         }
         store.layout.unpack(store.packed(discrete), &mut self.m.state);
         let (state, frame) = (&self.m.state, &mut self.m.frame);

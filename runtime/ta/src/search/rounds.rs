@@ -140,7 +140,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             discrete_states: self.store.discrete_states(),
             transitions: self.transitions,
             peak_bytes: self.peak,
-            complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes, self.latest),
+            complete: exhausted.is_none() && self.waiting.is_empty(&self.store.covered, self.latest),
             global_because: None,
             chosen: None,
             widest: exhausted.and_then(|_| WidestVariable::of(self.model, &self.extremes())),
@@ -178,7 +178,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             self.begin()?;
         }
         self.measure();
-        if self.decided() || self.waiting.is_empty(&self.store.nodes, self.latest) {
+        if self.decided() || self.waiting.is_empty(&self.store.covered, self.latest) {
             return Ok(ControlFlow::Break(None));
         }
         let bytes = self.store.bytes() + self.waiting.bytes();
@@ -201,7 +201,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             return Ok(ControlFlow::Break(Some(SearchCutoff::Stopped)));
         }
         let mut round = std::mem::take(&mut self.round);
-        self.waiting.take(&self.store.nodes, ROUND, &mut round);
+        self.waiting.take(&self.store.covered, ROUND, &mut round);
         let context = ExpansionContext {
             store: &self.store,
             goals: &self.compiled,
@@ -251,6 +251,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         let first = self.store.nodes.len() as u32;
         let mut batches = std::mem::take(&mut self.batches);
         let mut end = None;
+        self.store.begin_round();
         for ChunkPlace { batch, chunk } in in_order(&batches) {
             let batch = &mut batches[batch];
             let (visited, transitions) = batch.work(chunk);
@@ -272,7 +273,8 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             }
         }
         self.batches = batches;
-        self.waiting.settle(&self.store.nodes);
+        self.store.end_round(self.crew.threads());
+        self.waiting.settle();
         Ok(end)
     }
 
@@ -297,7 +299,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         let worker = self.crew.first();
         for number in batch.items(chunk) {
             let item = batch.item(number);
-            if simulates && item.parent != NIL && self.store.nodes[item.parent as usize].covered {
+            if simulates && item.parent != NIL && self.store.covered.has(item.parent) {
                 continue;
             }
             let arrival = self.latest.map_or(0, |_| {
@@ -308,8 +310,11 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
                 continue;
             }
             let packed = batch.packed(number, self.store.layout.words);
-            let known =
-                if item.discrete == NIL { self.store.find(item.hash, packed) } else { Some(item.discrete) };
+            let known = if item.discrete == NIL {
+                self.store.find_recent(item.hash, packed)
+            } else {
+                Some(item.discrete)
+            };
             let ranks = batch.ranks(number, self.counters.len());
             let mut lost = false;
             let discrete = match known {
@@ -327,7 +332,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
                         continue;
                     };
                     for n in covers.iter().chain(batch.covered(item)) {
-                        if !self.store.nodes[*n as usize].covered {
+                        if !self.store.covered.has(*n) {
                             self.waiting.covered(*n);
                             self.store.cover(*n);
                             lost = true;

@@ -15,6 +15,7 @@ use crate::{
             TransitionEffect, TransitionFiring,
         },
     },
+    search::store::{PackedState, PassedList},
     zone::{
         constraint::DifferenceConstraint,
         dbm::{ClockUpperBounds, Dbm, DbmBound, DbmNumber},
@@ -32,6 +33,8 @@ pub(crate) struct SymbolicSuccessor<'a, N> {
     /// Not extrapolated.
     pub zone: &'a mut Dbm<N>,
     pub resets: &'a [ClockReset],
+    /// Its discrete state, looked up.
+    pub packed: &'a mut PackedState,
 }
 
 /// Which clocks zones have, and what is told apart of them.
@@ -74,6 +77,7 @@ struct StepperWorkspace<N> {
     from: Vec<(u16, i64)>,
     /// The index in the zone before the transition, by clock of the network.
     index: Vec<u16>,
+    packed: PackedState,
 }
 
 /// The clock is not in the zone.
@@ -120,6 +124,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
             above: ClockUpperBounds::new(),
             from: Vec::new(),
             index: Vec::new(),
+            packed: PackedState::default(),
         };
         Self { model, clocks, scratch: EnumerationScratch::default(), before: Vec::new(), w }
     }
@@ -153,7 +158,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
         self.clocks.frame(self.model, state, out);
     }
 
-    /// Calls `f` with each symbolic successor, in order, until it breaks off.
+    /// Calls `f` with each symbolic successor, in order, until it breaks off. They are looked up in the store.
     ///
     /// # Errors
     /// A fault of the model that the zone meets.
@@ -162,6 +167,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
         state: &mut [i64],
         frame: &ActiveClocks,
         zone: &Dbm<N>,
+        store: &PassedList<N>,
         mut f: F,
     ) -> Result<(), ModelError>
     where
@@ -178,7 +184,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
         let mut number = 0;
         let mut fault = None;
         let mut found = |found: FiringOrError| -> ControlFlow<()> {
-            match w.found(model, clocks, &before, zone, &index, &found) {
+            match w.found(model, clocks, &before, (zone, store), &index, &found) {
                 Ok(false) => ControlFlow::Continue(()),
                 Err(error) => {
                     fault = Some(error);
@@ -194,6 +200,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
                         frame: &w.frame,
                         zone: &mut w.zone,
                         resets: &w.effect.resets,
+                        packed: &mut w.packed,
                     })
                 }
             }
@@ -212,7 +219,7 @@ impl<N: DbmNumber> StepperWorkspace<N> {
         model: &CompiledNetwork,
         clocks: ZoneClocks,
         state: &[i64],
-        zone: &Dbm<N>,
+        (zone, store): (&Dbm<N>, &PassedList<N>),
         index: &[u16],
         found: &FiringOrError,
     ) -> Result<bool, ModelError> {
@@ -242,6 +249,7 @@ impl<N: DbmNumber> StepperWorkspace<N> {
         if !effect.map_err(named)? {
             return Ok(false);
         }
+        store.expect(&self.effect.target, &mut self.packed);
         let source = if guarded { &self.guarded } else { zone };
         for NegativityCheck { reset, member, edge } in &self.effect.below {
             let x = index[usize::from(reset.from)];
@@ -252,6 +260,7 @@ impl<N: DbmNumber> StepperWorkspace<N> {
         }
         clocks.frame(model, &self.effect.target, &mut self.frame);
         self.transfer(index, if guarded { None } else { Some(zone) });
+        store.look_up(&mut self.packed);
         if !model.invariant(&mut self.effect.target, &mut self.stack, &mut self.invariant)? {
             return Ok(false);
         }

@@ -3,10 +3,20 @@
 
 use std::hash::Hasher;
 
-use hashbrown::HashTable;
+use prefetch_index::prefetch_index;
 use rustc_hash::FxHasher;
 
-use crate::zone::dbm::DbmNumber;
+use crate::{
+    search::{
+        discrete::DiscreteStates,
+        hash_index::{HashIndex, half},
+        threads::CrewThreads,
+    },
+    zone::dbm::DbmNumber,
+};
+
+/// Bytes of a line of the processor's cache.
+pub(crate) const LINE: usize = 64;
 
 /// No node, no state, no zone.
 pub(crate) const NIL: u32 = u32::MAX;
@@ -76,6 +86,15 @@ pub(crate) fn hash_zone<N: DbmNumber>(zone: &[N]) -> u64 {
     h.finish()
 }
 
+/// A discrete state on its way to be looked up.
+#[derive(Default)]
+pub(crate) struct PackedState {
+    pub words: Vec<u64>,
+    pub hash: u64,
+    /// Its number, if it is stored and was looked up.
+    pub known: Option<u32>,
+}
+
 /// A symbolic state.
 #[derive(Clone, Copy)]
 pub(crate) struct SymbolicNode {
@@ -87,36 +106,41 @@ pub(crate) struct SymbolicNode {
     pub zone: u32,
     /// The next of the same discrete state.
     pub next: u32,
-    /// A greater one of the same discrete state drove it out: only the path to it is kept.
-    pub covered: bool,
 }
 
-/// Where a zone is, in a table by hashes. With half of its hash, so that the table grows without a look at all zones.
-#[derive(Clone, Copy)]
-struct HashedZone {
-    at: u32,
-    half: u32,
+/// Which nodes a greater one of the same discrete state drove out: only the path to them is kept.
+#[derive(Default)]
+pub(crate) struct CoveredNodes {
+    bits: Vec<u64>,
 }
 
-impl HashedZone {
-    fn new(at: u32, hash: u64) -> Self {
-        Self { at, half: (hash ^ (hash >> 32)) as u32 }
+impl CoveredNodes {
+    pub(crate) fn has(&self, node: u32) -> bool {
+        self.bits.get(node as usize / 64).is_some_and(|word| word >> (node % 64) & 1 == 1)
     }
 
-    /// The half spread over all bits: a table takes its groups by the low ones, its tags by the high ones.
-    fn spread(&self) -> u64 {
-        u64::from(self.half).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    /// Whether it was not there.
+    fn add(&mut self, node: u32) -> bool {
+        let (word, bit) = (node as usize / 64, 1 << (node % 64));
+        if self.bits.len() <= word {
+            self.bits.resize(word + 1, 0);
+        }
+        let new = self.bits[word] & bit == 0;
+        self.bits[word] |= bit;
+        new
     }
 }
 
 pub(crate) struct PassedList<N> {
     pub layout: StateLayout,
-    words: Vec<u64>,
+    discrete: DiscreteStates,
+    /// By discrete state its newest node.
     heads: Vec<u32>,
-    numbers: HashTable<u32>,
     pub nodes: Vec<SymbolicNode>,
+    pub covered: CoveredNodes,
     zones: Vec<N>,
-    places: HashTable<HashedZone>,
+    /// Where zones begin, by their hashes.
+    places: HashIndex,
     /// The ranks of the one-way counters of each node, so many of each.
     ranks: Vec<u32>,
     counters: usize,
@@ -129,13 +153,13 @@ impl<N: DbmNumber> PassedList<N> {
     /// The layout leaves out so many one-way counters, whose ranks stand with the nodes.
     pub(crate) fn new(layout: StateLayout, counters: usize, keep_lengths: bool) -> Self {
         Self {
+            discrete: DiscreteStates::new(layout.words),
             layout,
-            words: Vec::new(),
             heads: Vec::new(),
-            numbers: HashTable::new(),
             nodes: Vec::new(),
+            covered: CoveredNodes::default(),
             zones: Vec::new(),
-            places: HashTable::new(),
+            places: HashIndex::default(),
             ranks: Vec::new(),
             counters,
             lengths: keep_lengths.then(Vec::new),
@@ -149,12 +173,12 @@ impl<N: DbmNumber> PassedList<N> {
 
     /// The bytes in use.
     pub(crate) fn bytes(&self) -> usize {
-        self.words.len() * 8
+        self.discrete.bytes()
             + self.heads.len() * 4
-            + self.numbers.capacity() * 5
             + self.nodes.len() * size_of::<SymbolicNode>()
+            + self.covered.bits.len() * 8
             + self.zones.len() * size_of::<N>()
-            + self.places.capacity() * 9
+            + self.places.bytes()
             + self.ranks.len() * 4
             + self.lengths.as_ref().map_or(0, Vec::len) * 4
     }
@@ -173,7 +197,7 @@ impl<N: DbmNumber> PassedList<N> {
     pub(crate) fn extremes(&self) -> Vec<(i64, i64)> {
         let mut all = vec![(i64::MAX, i64::MIN); self.layout.fields.len()];
         let mut state = Vec::new();
-        for words in self.words.chunks_exact(self.layout.words) {
+        for words in self.discrete.all() {
             self.layout.unpack(words, &mut state);
             for (seen, &n) in all.iter_mut().zip(&state) {
                 *seen = (seen.0.min(n), seen.1.max(n));
@@ -183,12 +207,25 @@ impl<N: DbmNumber> PassedList<N> {
     }
 
     pub(crate) fn packed(&self, discrete: u32) -> &[u64] {
-        let w = self.layout.words;
-        &self.words[discrete as usize * w..(discrete as usize + 1) * w]
+        self.discrete.packed(discrete)
     }
 
     pub(crate) fn zone(&self, node: &SymbolicNode, dim: usize) -> &[N] {
         self.zone_at(node.zone, dim * dim)
+    }
+
+    /// Has the processor fetch what is kept of these nodes, with so many entries of each zone, while it does other things.
+    pub(crate) fn prefetch(&self, nodes: &[u32], entries: usize) {
+        for &n in nodes {
+            prefetch_index(&self.nodes, n as usize);
+        }
+        for &n in nodes {
+            let node = &self.nodes[n as usize];
+            self.discrete.prefetch(node.discrete);
+            for at in (0..entries).step_by(LINE / size_of::<N>()) {
+                prefetch_index(&self.zones, node.zone as usize + at);
+            }
+        }
     }
 
     /// The zone of so many entries that begins there.
@@ -199,13 +236,41 @@ impl<N: DbmNumber> PassedList<N> {
     /// Where the zone of this hash is, if it is stored.
     pub(crate) fn find_zone(&self, zone: &[N], hash: u64) -> Option<u32> {
         // Where a longer one begins with this, it is there, too.
-        let wanted = HashedZone::new(NIL, hash);
-        let is = |z: &HashedZone| z.half == wanted.half && self.zones[z.at as usize..].starts_with(zone);
-        self.places.find(wanted.spread(), is).map(|z| z.at)
+        self.places.find(half(hash), |at| self.zones[at as usize..].starts_with(zone))
     }
 
     pub(crate) fn find(&self, hash: u64, packed: &[u64]) -> Option<u32> {
-        self.numbers.find(hash, |&n| self.packed(n) == packed).copied()
+        self.discrete.find(hash, packed)
+    }
+
+    /// Packs a discrete state that is [looked up](Self::look_up) soon, and has the processor fetch its place meanwhile.
+    pub(crate) fn expect(&self, state: &[i64], out: &mut PackedState) {
+        self.layout.pack(state, &mut out.words);
+        out.hash = hash_words(&out.words);
+        self.discrete.prefetch_place(out.hash);
+    }
+
+    /// Looks up a packed state, and has the processor fetch its newest node's number.
+    pub(crate) fn look_up(&self, state: &mut PackedState) {
+        state.known = self.find(state.hash, &state.words);
+        if let Some(known) = state.known {
+            prefetch_index(&self.heads, known as usize);
+        }
+    }
+
+    /// As [`find`](Self::find), of what the round has added.
+    pub(crate) fn find_recent(&self, hash: u64, packed: &[u64]) -> Option<u32> {
+        self.discrete.find_recent(hash, packed)
+    }
+
+    /// A round is stored from now on.
+    pub(crate) fn begin_round(&mut self) {
+        self.discrete.begin_round();
+    }
+
+    /// The round is stored.
+    pub(crate) fn end_round(&mut self, threads: &mut CrewThreads) {
+        self.discrete.end_round(threads);
     }
 
     /// The newest node of a discrete state.
@@ -214,13 +279,8 @@ impl<N: DbmNumber> PassedList<N> {
     }
 
     pub(crate) fn add_discrete(&mut self, hash: u64, packed: &[u64]) -> u32 {
-        // INVARIANT: budgets keep all numbers below `NIL`.
-        let n = self.heads.len() as u32;
-        self.words.extend_from_slice(packed);
         self.heads.push(NIL);
-        let (w, words) = (self.layout.words, &self.words);
-        self.numbers.insert_unique(hash, n, |&n| hash_words(&words[n as usize * w..(n as usize + 1) * w]));
-        n
+        self.discrete.add(hash, packed)
     }
 
     /// Where the zone of this hash is, which is added if it is not there.
@@ -230,8 +290,7 @@ impl<N: DbmNumber> PassedList<N> {
         }
         let place = self.zones.len() as u32;
         self.zones.extend_from_slice(zone);
-        let new = HashedZone::new(place, hash);
-        self.places.insert_unique(new.spread(), new, HashedZone::spread);
+        self.places.insert(half(hash), place);
         place
     }
 
@@ -249,7 +308,7 @@ impl<N: DbmNumber> PassedList<N> {
         }
         let id = self.nodes.len() as u32;
         let next = std::mem::replace(&mut self.heads[discrete as usize], id);
-        self.nodes.push(SymbolicNode { parent, via, discrete, zone, next, covered: false });
+        self.nodes.push(SymbolicNode { parent, via, discrete, zone, next });
         self.stored += 1;
         id
     }
@@ -260,7 +319,7 @@ impl<N: DbmNumber> PassedList<N> {
         let mut last = NIL;
         while at != NIL {
             let node = self.nodes[at as usize];
-            if node.covered {
+            if self.covered.has(at) {
                 if last == NIL {
                     self.heads[discrete as usize] = node.next;
                 } else {
@@ -274,9 +333,7 @@ impl<N: DbmNumber> PassedList<N> {
     }
 
     pub(crate) fn cover(&mut self, node: u32) {
-        let node = &mut self.nodes[node as usize];
-        if !node.covered {
-            node.covered = true;
+        if self.covered.add(node) {
             self.stored -= 1;
         }
     }

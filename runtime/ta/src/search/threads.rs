@@ -1,11 +1,23 @@
 //! Work shared out among threads, of which the caller's is one.
 
-use std::sync::{Mutex, PoisonError};
+use std::{
+    hint::spin_loop,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread::yield_now,
+};
 
 /// Pieces of work of the caller's after which it is asked again whether to go on: a round may last for seconds.
 const UNASKED: usize = 8;
 /// Fewer pieces are done before another thread is awake.
 const FEW: usize = 4;
+
+/// Looks at whether another thread is done before a thread is put to sleep. Rounds are so short that waking it up takes as long as a good
+/// part of one; after some looks other programs may go first.
+const LOOKS: usize = 200;
+const LOOKS_IN_ONE_GO: usize = 50;
 
 /// The threads beside the caller's.
 ///
@@ -15,12 +27,19 @@ pub(crate) struct CrewThreads {
     others: usize,
     /// Small searches never need it.
     pool: Option<rayon::ThreadPool>,
+    /// How often work was given out.
+    given: Arc<AtomicUsize>,
 }
 
 impl CrewThreads {
     /// So many, with the caller's.
     pub(crate) fn new(threads: usize) -> Self {
-        Self { others: threads.saturating_sub(1), pool: None }
+        Self { others: threads.saturating_sub(1), pool: None, given: Arc::default() }
+    }
+
+    /// How many there are, with the caller's.
+    pub(crate) fn count(&self) -> usize {
+        self.others + 1
     }
 
     /// Gives each of the pieces to one of the workers: whoever is free takes the next. The first worker is the caller's thread; there are
@@ -37,13 +56,12 @@ impl CrewThreads {
         // Locked while a piece is taken, not while it is worked on.
         let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).as_mut()?.next();
         let Some(pool) = pool else { return do_all(next, mine, go_on) };
-        pool.in_place_scope(|scope| {
-            for other in workers {
-                let next = &next;
-                scope.spawn(move |_| {
-                    do_all(next, other, &|| true);
-                });
+        let others = workers.map(|other| {
+            || {
+                do_all(next, other, &|| true);
             }
+        });
+        pool.beside(others, || {
             let whole = do_all(next, mine, go_on);
             if !whole {
                 *pieces.lock().unwrap_or_else(PoisonError::into_inner) = None;
@@ -56,19 +74,62 @@ impl CrewThreads {
     pub(crate) fn each<P: Send>(&mut self, mut pieces: impl Iterator<Item = P>, work: &(impl Fn(P) + Sync)) {
         let Some(pool) = self.pool() else { return pieces.for_each(work) };
         let mine = pieces.next();
-        pool.in_place_scope(|scope| {
-            pieces.for_each(|piece| scope.spawn(move |_| work(piece)));
-            mine.into_iter().for_each(work);
-        });
+        pool.beside(pieces.map(|piece| || work(piece)), || mine.into_iter().for_each(work));
     }
 
     /// Where there can be no more threads, the caller's does all.
-    fn pool(&mut self) -> Option<&rayon::ThreadPool> {
+    fn pool(&mut self) -> Option<AwakeThreads<'_>> {
         if self.pool.is_none() && self.others > 0 {
             self.pool = rayon::ThreadPoolBuilder::new().num_threads(self.others).build().ok();
             self.others = if self.pool.is_some() { self.others } else { 0 };
         }
-        self.pool.as_ref()
+        Some(AwakeThreads { pool: self.pool.as_ref()?, given: &self.given })
+    }
+}
+
+/// Threads that stay awake for a while after their work.
+#[derive(Clone, Copy)]
+struct AwakeThreads<'a> {
+    pool: &'a rayon::ThreadPool,
+    given: &'a Arc<AtomicUsize>,
+}
+
+impl AwakeThreads<'_> {
+    /// Does `mine` on the caller's thread, and each of the others on one of these.
+    fn beside<R>(self, others: impl Iterator<Item = impl FnOnce() + Send>, mine: impl FnOnce() -> R) -> R {
+        let (mut begun, ended) = (0, &AtomicUsize::new(0));
+        let result = self.pool.in_place_scope(|scope| {
+            for other in others {
+                begun += 1;
+                scope.spawn(move |_| {
+                    other();
+                    ended.fetch_add(1, Ordering::Release);
+                });
+            }
+            self.given.fetch_add(1, Ordering::Release);
+            let result = mine();
+            look_until(|| ended.load(Ordering::Acquire) == begun);
+            result
+        });
+        let now = self.given.load(Ordering::Acquire);
+        for _ in 0..begun {
+            let given = Arc::clone(self.given);
+            self.pool.spawn(move || look_until(|| given.load(Ordering::Acquire) != now));
+        }
+        result
+    }
+}
+
+/// Returns when it is `true`, or after some time.
+fn look_until(done: impl Fn() -> bool) {
+    for _ in 0..LOOKS {
+        for _ in 0..LOOKS_IN_ONE_GO {
+            if done() {
+                return;
+            }
+            spin_loop();
+        }
+        yield_now();
     }
 }
 

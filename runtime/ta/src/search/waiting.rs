@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::{
     network::model::CompiledNetwork,
-    search::{options::SearchOrder, store::SymbolicNode},
+    search::{options::SearchOrder, store::CoveredNodes},
 };
 
 /// Waiting states.
@@ -77,8 +77,8 @@ impl WaitingList {
     }
 
     /// Whether nothing waits; states that were driven out are forgotten, and so are those that arrive later than `latest`.
-    pub(crate) fn is_empty(&mut self, nodes: &[SymbolicNode], latest: Option<i64>) -> bool {
-        let gone = |n: u32| nodes[n as usize].covered;
+    pub(crate) fn is_empty(&mut self, covered: &CoveredNodes, latest: Option<i64>) -> bool {
+        let gone = |n: u32| covered.has(n);
         if let Some(heap) = &mut self.by_time {
             let late = |arrival: i64| latest.is_some_and(|l| arrival > l);
             while heap.peek().is_some_and(|Reverse((arrival, _, n))| late(*arrival) || gone(*n)) {
@@ -175,7 +175,7 @@ impl WaitingList {
     }
 
     /// A round is stored.
-    pub(crate) fn settle(&mut self, _: &[SymbolicNode]) {
+    pub(crate) fn settle(&mut self) {
         self.overtaken = false;
         match self.order {
             SearchOrder::Breadth | SearchOrder::Topological => {}
@@ -197,10 +197,10 @@ impl WaitingList {
 
     /// Takes up to `most` states; orders other than breadth first take a part of those that wait, so that the newest still
     /// come first where few wait.
-    pub(crate) fn take(&mut self, nodes: &[SymbolicNode], most: usize, out: &mut Vec<u32>) {
+    pub(crate) fn take(&mut self, covered: &CoveredNodes, most: usize, out: &mut Vec<u32>) {
         out.clear();
         if self.by_time.is_some() {
-            return self.take_earliest(nodes, most.min(FEW), out);
+            return self.take_earliest(covered, most.min(FEW), out);
         }
         let most = match self.order {
             SearchOrder::Breadth | SearchOrder::RandomBreadth => most,
@@ -215,7 +215,7 @@ impl WaitingList {
                 SearchOrder::Topological => self.heap.pop().map(|n| n.2).or_else(|| self.lowest_level()),
             };
             let Some(node) = next else { return };
-            if nodes[node as usize].covered {
+            if covered.has(node) {
                 continue;
             }
             if self.order == SearchOrder::Topological {
@@ -236,7 +236,7 @@ const FEW: usize = 64;
 
 impl WaitingList {
     /// Up to `most` states that arrive at the same time.
-    fn take_earliest(&mut self, nodes: &[SymbolicNode], most: usize, out: &mut Vec<u32>) {
+    fn take_earliest(&mut self, covered: &CoveredNodes, most: usize, out: &mut Vec<u32>) {
         let Some(heap) = &mut self.by_time else { return };
         let mut first = None;
         while out.len() < most
@@ -244,7 +244,7 @@ impl WaitingList {
             && *first.get_or_insert(arrival) == arrival
         {
             heap.pop();
-            if !nodes[node as usize].covered {
+            if !covered.has(node) {
                 out.push(node);
             } else if out.is_empty() {
                 first = None;
