@@ -94,3 +94,23 @@ fn queries_of_all_kinds_leave_out_what_nobody_reads() {
     assert!(slow["remark"].as_str().unwrap().contains("`Robot.laps` has the most values so far"), "{slow:#}");
     assert_eq!(all["networks"][0]["ranges"].as_array().unwrap().len(), 1);
 }
+
+#[test]
+fn each_variable_has_one_answer_whatever_each_search_reads() {
+    let ranges = |queries: &str| {
+        let model = "scenario twice\nactor robot : system\nautomaton Robot plays robot {\n  clock x\n  var a: 0..9\n  \
+            var c: 0..9\n  init location going\n  location done\n  \
+            going -> done when x >= 1 s do a += 1; c = a + 1\n}\nnetwork net = Robot\n";
+        let folder = folder(&[("twice.hri", format!("{model}{queries}").as_str())]);
+        let out = hrdsl_in(folder.path(), "prove twice.hri --json");
+        expect_code(&out, 0);
+        let all: Value = serde_json::from_slice(&out.stdout).unwrap();
+        let rows = all["networks"][0]["ranges"].as_array().unwrap();
+        rows.iter().map(|row| row["name"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    // The first search reads neither, the second `a`; then the other way round.
+    let both = ranges("query q of net = E<> Robot.done\nquery r of net = sup: Robot.a\n");
+    assert_eq!(both, ["Robot.a, Robot.c"]);
+    let one_by_one = ranges("query q of net = E<> Robot.a == 1\nquery r of net = sup: Robot.x\n");
+    assert_eq!(one_by_one, ["Robot.a", "Robot.c"]);
+}

@@ -257,6 +257,19 @@ fn a_deadlock_along_runs_is_left_out() {
 }
 
 #[test]
+fn clocks_are_not_compared_in_queries_where_one_stands() {
+    let process = "process P() { clock x, y; state a, b { x' == 0 }; init a; trans a -> b {}, b -> a { guard x >= 2; }; }";
+    let model = ForeignSource { name: "m.xta".to_owned(), text: format!("{process} system P;") };
+    let asked = "E<> P.a and P.x - P.y < 1\nE<> P.a and P.y < 1".to_owned();
+    let queries = ForeignSource { name: "m.q".to_owned(), text: asked };
+    let imported = import(&model, Some(&queries), &UppaalOptions::default()).unwrap();
+    compiles(&imported.text);
+    assert!(imported.text.contains("stopped(x)"), "{}", imported.text);
+    let left = imported.notes.iter().filter(|n| n.message.contains("where clocks stand still"));
+    assert_eq!(left.map(|n| n.line).collect::<Vec<u32>>(), [1], "{:?}", imported.notes);
+}
+
+#[test]
 fn names_that_mean_something_else_are_changed() {
     let text = model(
         "int actor, when, P2; clock after;",

@@ -38,8 +38,8 @@ pub struct QueryResult {
 /// Whether variables that nothing reads stay in their ranges.
 #[derive(Clone, Debug)]
 pub struct RangeResult {
-    /// The first of them, by slot of the network.
-    pub slot: usize,
+    /// Their slots of the network.
+    pub slots: Vec<usize>,
     /// Their names: more than one if they are computed from each other.
     pub variables: Vec<String>,
     pub found: RangeVerdict,
@@ -237,7 +237,7 @@ fn range_result(plain: &ObservedNetwork, answer: RangeAnswer, watch: &SearchWatc
         }
     };
     RangeResult {
-        slot: answer.slot,
+        slots: answer.slots,
         variables: answer.variables,
         found,
         run: run.map(|witness| Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),

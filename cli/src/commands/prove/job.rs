@@ -88,9 +88,8 @@ impl ProofJob {
         (known, told): (&[ProofRow], &mut Vec<(usize, PropertyKind, usize)>),
     ) -> Result<Vec<ProofRow>, CommandFault> {
         let (of, asked, settings, network) = (Arc::clone(program), queries.to_vec(), *settings, self.network);
-        let ranges = known.iter().map(|row| row.place);
-        let ranges: Vec<usize> =
-            ranges.filter(|p| p.0 == network && p.1 == PropertyKind::Range).map(|p| p.2).collect();
+        let mine = known.iter().filter(|row| row.place.0 == network);
+        let ranges: Vec<usize> = mine.flat_map(|row| row.slots.iter().copied()).collect();
         let work = move |watch: &SearchWatch| prove::answers(&of, &asked, &settings, watch, &ranges);
         let label = match queries {
             [query] => program.queries[*query].name.clone(),
@@ -133,9 +132,10 @@ impl ProofJob {
         let mut rows: Vec<ProofRow> = answers.iter().map(row).collect();
         // Answers of one search have the same of them.
         for range in answers.iter().flat_map(|answer| &answer.ranges) {
-            let place = (network, PropertyKind::Range, range.slot);
-            if rows.iter().all(|row| row.place != place) {
-                rows.push(ProofRow { place, ..ProofRow::of_range(range) });
+            let mut row = ProofRow::of_range(range);
+            row.place.0 = network;
+            if rows.iter().all(|other| other.place != row.place) {
+                rows.push(row);
             }
         }
         Ok(rows)

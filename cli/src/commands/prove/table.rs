@@ -32,6 +32,8 @@ pub struct ProofRow {
     pub time: Duration,
     /// The network, what it is, and its number: the order in which rows are shown.
     pub place: (usize, PropertyKind, usize),
+    /// The slots of the variables whose ranges it is about.
+    pub slots: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -123,6 +125,7 @@ impl ProofRow {
             joint: false,
             time: Duration::ZERO,
             place: (0, PropertyKind::Requirement, proof.monitor),
+            slots: Vec::new(),
         }
     }
 
@@ -159,6 +162,7 @@ impl ProofRow {
             joint: answer.joint,
             time: Duration::ZERO,
             place: (0, PropertyKind::Query, answer.query),
+            slots: Vec::new(),
         }
     }
 
@@ -184,7 +188,8 @@ impl ProofRow {
             statistics: range.statistics,
             joint: false,
             time: Duration::ZERO,
-            place: (0, PropertyKind::Range, range.slot),
+            place: (0, PropertyKind::Range, range.slots.first().copied().unwrap_or_default()),
+            slots: range.slots.clone(),
         }
     }
 }

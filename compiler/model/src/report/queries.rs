@@ -48,6 +48,13 @@ pub(crate) fn clock_sum(span: Span) -> Diagnostic {
     bad_query(span, "a comparison has one clock on each side at most", help)
 }
 
+/// HR0520: zones say more than can happen there, and splitting them along a difference relies on delays that leave it as it is.
+pub(crate) fn clocks_compared(location: &str, span: Span) -> Diagnostic {
+    let message =
+        format!("a query cannot compare two clocks where clocks stand still, as one does in `{location}`");
+    bad_query(span, message, "compare each of them with a time: `x >= 3 s and y < 1 s`")
+}
+
 /// HR0520
 pub(crate) fn not_linear(span: Span) -> Diagnostic {
     let help = "write a sum of times, each perhaps multiplied by an integer: `n * 500 ms + 2 s`";

@@ -38,8 +38,8 @@ use crate::{
 /// Whether variables that nothing reads stay in their ranges.
 #[derive(Clone, Debug)]
 pub struct RangeAnswer {
-    /// The first of them, by slot.
-    pub slot: usize,
+    /// Their slots.
+    pub slots: Vec<usize>,
     /// Their names: more than one if they are computed from each other.
     pub variables: Vec<String>,
     pub finding: RangeFinding,
@@ -187,8 +187,8 @@ impl<'p> UnreadCounters<'p> {
         known: &[usize],
         go_on: &dyn Fn(&SearchProgress<'_>) -> bool,
     ) -> Result<Vec<RangeAnswer>, SearchError> {
-        let open = |group: &&UnreadGroup| group.slots.first().is_none_or(|slot| !known.contains(slot));
-        self.groups.iter().filter(open).map(|group| self.range(group, options, go_on)).collect()
+        let open = |group: &&UnreadGroup| group.slots.iter().any(|slot| !known.contains(slot));
+        self.groups.iter().filter(open).map(|group| self.range(group, known, options, go_on)).collect()
     }
 
     /// A run that meets a goal as early as any, given one that meets it; `None`: it is not known to be found.
@@ -292,10 +292,11 @@ impl<'p> UnreadCounters<'p> {
         Ok(())
     }
 
-    /// Whether variables stay in their ranges.
+    /// Whether variables stay in their ranges, of which some may be known to.
     fn range(
         &self,
         group: &UnreadGroup,
+        known: &[usize],
         options: &SearchOptions,
         go_on: &dyn Fn(&SearchProgress<'_>) -> bool,
     ) -> Result<RangeAnswer, SearchError> {
@@ -329,9 +330,12 @@ impl<'p> UnreadCounters<'p> {
             Err(SearchError::Model { error, witness: Some(run) }) => (self.left(group, error, &run)?, None),
             Err(error) => return Err(error),
         };
-        let variables = group.slots.iter().map(|s| self.model.slot_name(*s)).collect();
-        let slot = group.slots.first().copied().unwrap_or_default();
-        Ok(RangeAnswer { slot, variables, finding, statistics })
+        let mut slots = group.slots.clone();
+        if matches!(finding, RangeFinding::Kept) {
+            slots.retain(|slot| !known.contains(slot));
+        }
+        let variables = slots.iter().map(|s| self.model.slot_name(*s)).collect();
+        Ok(RangeAnswer { slots, variables, finding, statistics })
     }
 
     /// What a run to a fault, found without the other variables, is in the network itself.

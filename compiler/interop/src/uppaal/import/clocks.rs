@@ -143,6 +143,9 @@ impl UppaalTranslation<'_> {
         let minus: Vec<&String> = sum.clocks.iter().filter(|(s, _)| *s < 0).map(|(_, c)| c).collect();
         let (left, op) = match (plus.as_slice(), minus.as_slice()) {
             ([x], []) => ((*x).clone(), op),
+            ([_], [_]) if self.in_query && self.clocks_stand => {
+                return fault(span, "a query cannot compare two clocks where clocks stand still");
+            }
             ([x], [y]) => (format!("{x} - {y}"), op),
             ([], [y]) => {
                 sum.terms.iter_mut().for_each(|(sign, _)| *sign = -*sign);

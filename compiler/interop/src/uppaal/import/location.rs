@@ -65,6 +65,7 @@ impl UppaalTranslation<'_> {
             let joined = condition.contains("||") && !stopped.stands.is_empty();
             parts.push(if joined { format!("({condition})") } else { condition });
         }
+        self.clocks_stand |= !stopped.stands.is_empty();
         parts.extend(stopped.stands.iter().map(|clock| format!("stopped({clock})")));
         parts.retain(|part| !part.is_empty());
         if !parts.is_empty() {

@@ -71,6 +71,8 @@ pub(crate) struct UppaalTranslation<'m> {
     pub metas: IndexSet<String>,
     /// Clocks that are stopped somewhere, as queries call them where they belong to a process, and where.
     pub stopwatches: Vec<(String, Span)>,
+    /// In some location of the scenario a clock stands still.
+    pub clocks_stand: bool,
     /// Those that stand where what is being written begins.
     pub standing: BTreeMap<String, i64>,
     /// What happens to clocks in what is being written, in order.
@@ -114,6 +116,7 @@ impl<'m> UppaalTranslation<'m> {
             bit_functions: Vec::new(),
             metas: IndexSet::new(),
             stopwatches: Vec::new(),
+            clocks_stand: false,
             standing: BTreeMap::new(),
             clock_log: Vec::new(),
             clock_uses: BTreeMap::new(),

@@ -33,6 +33,8 @@ pub(super) struct QueryNetwork {
     locations: OrderedMap<String, (u16, LocationId)>,
     /// Shared ones by their names, others as `Automaton.clock`.
     clocks: OrderedMap<String, ClockId>,
+    /// A location in which a clock stands still.
+    stands: Option<String>,
     /// Variables: shared ones by their names, others as `Automaton.variable`.
     env: ExprEnv,
     /// The same, and each location as a bool. Their numbers follow those of the variables, in the network's order.
@@ -116,6 +118,7 @@ impl AutomataPhase<'_, '_> {
             automata: Vec::new(),
             locations: OrderedMap::default(),
             clocks: OrderedMap::default(),
+            stands: None,
             env: ExprEnv {
                 noun: Some(Noun::Variable),
                 shared: self.shared.scope.clone(),
@@ -132,7 +135,9 @@ impl AutomataPhase<'_, '_> {
             let of = &self.s.automata[at].name;
             net.automata.push(of.clone());
             for (number, location) in (0u16..).zip(&self.s.automata[at].locations) {
-                net.locations.insert(format!("{of}.{}", location.name), (place, LocationId(number)));
+                let name = format!("{of}.{}", location.name);
+                net.stands = net.stands.or_else(|| (!location.stopped.is_empty()).then(|| name.clone()));
+                net.locations.insert(name, (place, LocationId(number)));
             }
             let Some(scope) = self.scopes.get(&at) else { continue };
             for local in scope.names.values() {
@@ -374,7 +379,10 @@ impl AutomataPhase<'_, '_> {
         let Some(bound) = self.times_on_the_right(&sum, net) else { return Some(nothing()) };
         let (clock, minus, flipped) = match (sum.plus.as_slice(), sum.minus.as_slice()) {
             ([x], []) => (*x, None, false),
-            ([x], [y]) => (*x, Some(*y), false),
+            ([x], [y]) => {
+                net.stands.iter().for_each(|at| self.report(queries::clocks_compared(at, span)));
+                (*x, Some(*y), false)
+            }
             ([], [y]) => (*y, None, true),
             _ => {
                 self.report(queries::clock_sum(span));
