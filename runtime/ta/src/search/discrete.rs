@@ -142,3 +142,49 @@ impl DiscreteStates {
         self.recent_numbers.clear();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::search::store::hash_words;
+
+    proptest! {
+        /// Rounds of any length, or none, with any number of threads: all that was added is found, and counted alike.
+        #[test]
+        fn rounds_find_and_count_what_one_by_one_does(
+            rounds in prop::collection::vec(prop::collection::btree_set(any::<[u64; 2]>(), 0..600), 0..4),
+            threads in 1usize..4,
+        ) {
+            let mut threads = CrewThreads::new(threads);
+            let (mut rounded, mut direct) = (DiscreteStates::new(2), DiscreteStates::new(2));
+            let mut all: Vec<[u64; 2]> = Vec::new();
+            for states in rounds {
+                rounded.begin_round();
+                for state in states {
+                    let hash = hash_words(&state);
+                    let known = all.iter().position(|s| *s == state).map(|n| n as u32);
+                    prop_assert_eq!(rounded.find(hash, &state), known);
+                    prop_assert_eq!(direct.find(hash, &state), known);
+                    if known.is_none() {
+                        prop_assert_eq!(rounded.add(hash, &state), all.len() as u32);
+                        direct.add(hash, &state);
+                        prop_assert_eq!(rounded.find_recent(hash, &state), Some(all.len() as u32));
+                        all.push(state);
+                        prop_assert_eq!(rounded.bytes(), direct.bytes());
+                    }
+                }
+                rounded.end_round(&mut threads);
+            }
+            for (number, state) in (0..).zip(&all) {
+                let hash = hash_words(state);
+                prop_assert_eq!(rounded.find(hash, state), Some(number));
+                prop_assert_eq!(rounded.find_recent(hash, state), None);
+                prop_assert_eq!(direct.find(hash, state), Some(number));
+            }
+            let counted: usize = rounded.parts.iter().map(HashIndex::bytes).sum();
+            prop_assert_eq!(counted, rounded.places * SLOT);
+        }
+    }
+}
