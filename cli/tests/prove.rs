@@ -136,6 +136,20 @@ fn some_can_be_chosen_and_asked() {
     let wrong = ask("E<> Door.opn");
     expect_code(&wrong, 1);
     assert!(stderr(&wrong).contains("did you mean `open`?"), "{}", stderr(&wrong));
+    // The place is one of the command line.
+    assert!(stderr(&wrong).contains("[--ask:1:10]"), "{}", stderr(&wrong));
+    let mut two = support::command();
+    two.current_dir(folder.path()).args([
+        "prove",
+        "door.hri",
+        "--ask",
+        "E<> Door.open",
+        "--ask",
+        "A[] not (",
+    ]);
+    let two = two.output().unwrap();
+    expect_code(&two, 1);
+    assert!(stderr(&two).contains("[--ask:2:"), "{}", stderr(&two));
 }
 
 #[test]

@@ -310,6 +310,10 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
         ("void f() { int n; n = n++ + 1; }", "`n` is changed within this statement and read elsewhere in it"),
         ("bool b; int n; void f() { b = b && n++ > 1; }", "in a part that is not always evaluated"),
         ("int x = ;", "expected an expression, found `;`"),
+        ("int x = 0x0F;", "`0x0F` is no number: UPPAAL's are decimal; write `15`"),
+        ("int x = 12ms;", "`12ms` is no number: UPPAAL's are decimal; a space or an operator is missing"),
+        ("int x = ~1;", "found `~`, which is no operator of UPPAAL: `-1 - x` is `x` with every bit changed"),
+        ("int sum(int a) { return a; }", "`sum` is a word of UPPAAL's language: choose another name"),
         ("/* open", "not closed"),
     ];
     for (global, why) in bad {

@@ -323,7 +323,9 @@ fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAns
         QueryVerdict::Holds => QueryFinding::Satisfied,
         QueryVerdict::Fails => QueryFinding::NotSatisfied,
     };
-    let said = matches!(found, QueryFinding::Inconclusive(_) | QueryFinding::Bounds(_));
+    // How long the run to a state is, is said of each run.
+    let shown = run.is_some() && matches!(ask, QueryKind::Possibly(_) | QueryKind::Invariantly(_));
+    let said = shown || matches!(found, QueryFinding::Inconclusive(_) | QueryFinding::Bounds(_));
     QueryResult {
         query,
         found,

@@ -3,6 +3,7 @@
 use hrdsl_compiler::{CompilationResult, InputFile, ast, compile_with};
 use hrdsl_ir::{Program, ta::Network};
 use hrdsl_runtime::prove::is_decided_with_others;
+use hrdsl_source::{FileId, Span};
 
 use super::{
     ProveArgs,
@@ -34,19 +35,21 @@ impl QueriedScenario {
             return Ok(Self { compilation: plain, added: Vec::new() });
         };
         let taken = names(&plain);
-        let mut added = Vec::new();
+        let (mut added, mut asked) = (Vec::new(), AskedText { whole: text.len(), ..AskedText::default() });
         for network in networks {
             for ask in &args.ask {
                 let name =
                     (1..).map(|n| format!("ask{n}")).find(|n| !taken.contains(n) && !added.contains(n));
                 let name = name.unwrap_or_default();
-                text += &format!("\nquery {name} of {network} = {}", one_line(ask));
+                text += &format!("\nquery {name} of {network} = ");
+                asked.add(&one_line(ask), &mut text);
                 added.push(name);
             }
         }
         text.push('\n');
-        let compilation =
+        let mut compilation =
             compile_with(InputFile { name: &name, text: &text }, &[], &DiskModules::of(Some(&args.file)));
+        asked.own_what_is_said(&mut compilation);
         Ok(Self { compilation, added })
     }
 
@@ -77,6 +80,48 @@ impl QueriedScenario {
             jobs.extend(groups.map(|group| ProofJob { network, what: ProofTarget::Queries(group) }));
         }
         Ok(jobs)
+    }
+}
+
+/// The queries of the command line as a file of their own, so that what is said of them has a place that the reader knows.
+#[derive(Default)]
+struct AskedText {
+    /// How long the scenario is without them.
+    whole: usize,
+    text: String,
+    /// Where each begins behind the scenario, where in the file of its own, and how long it is.
+    places: Vec<(usize, usize, usize)>,
+}
+
+impl AskedText {
+    /// Adds a query to the scenario's text.
+    fn add(&mut self, ask: &str, text: &mut String) {
+        self.places.push((text.len(), self.text.len(), ask.len()));
+        text.push_str(ask);
+        self.text += ask;
+        self.text.push('\n');
+    }
+
+    /// Has what is said of the queries speak of their own file.
+    fn own_what_is_said(self, compilation: &mut CompilationResult) {
+        let file = compilation.files.add("--ask", self.text.as_str());
+        for diagnostic in &mut compilation.diagnostics {
+            let labels = diagnostic.labels.iter_mut().map(|label| &mut label.span);
+            let edits = diagnostic.fixes.iter_mut().flat_map(|fix| &mut fix.edits).map(|edit| &mut edit.span);
+            labels.chain(edits).for_each(|span| self.own(span, file));
+        }
+    }
+
+    fn own(&self, span: &mut Span, file: FileId) {
+        let Span { file: of, start, end } = *span;
+        let (start, end) = (start as usize, end as usize);
+        if of != FileId(0) || start < self.whole {
+            return;
+        }
+        let before = self.places.partition_point(|(begins, _, _)| *begins <= start).saturating_sub(1);
+        let Some(&(begins, at, length)) = self.places.get(before) else { return };
+        let place = |byte: usize| at + byte.saturating_sub(begins).min(length);
+        *span = Span::new(file, place(start), place(end));
     }
 }
 

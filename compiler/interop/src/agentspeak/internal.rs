@@ -60,6 +60,10 @@ pub fn infer(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result<(), Omis
             if matches!(walk.types.get(id), AgentSpeakType::Number { .. }) {
                 return Err("with a number `.delete` takes away what is at that place".to_owned());
             }
+            if matches!(walk.types.get(id), AgentSpeakType::Text) {
+                let message = "with a string `.delete` takes away parts of a string: `.occurrences` finds them, `.slice` cuts";
+                return Err(message.to_owned());
+            }
             in_list(walk, element, a)?;
             lists(walk, &[a, b])
         }

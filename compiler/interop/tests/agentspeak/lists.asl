@@ -21,6 +21,7 @@ big(X, Y) :- X > Y.
       .union(Sorted, [4], U); .intersection(U, [1], I); .difference(U, I, D);
       .delete(b, P, Without);
       .delete(0, P, Rest);
+      .delete("a", "banana", Fewer);
       .shuffle(D, Mixed); .random(Mixed, One); .all_names(Names);
       ?reach(a, To);
       ?big(One, 2);

@@ -149,7 +149,7 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
             }
         }
         if let Some(store) = store {
-            store.expect(&w.effect.target, &mut w.packed);
+            store.anticipate(&w.effect.target, &mut w.packed);
         }
         self.negative(w, zone)?;
         if !self.enters(w, zone, firing)? {

@@ -127,7 +127,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     ) -> Result<(), ModelError> {
         let (mut state, frame, mut zone) = self.stepper.initial()?;
         let visit = NodeExpansion { model: self.model, c, node: NIL, keep: true };
-        c.store.expect(&state, &mut self.m.packed);
+        c.store.anticipate(&state, &mut self.m.packed);
         visit.arrive(&mut self.m, (&mut state, None), &frame, &mut zone, (NIL, 0), batch)
     }
 

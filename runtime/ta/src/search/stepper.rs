@@ -249,7 +249,7 @@ impl<N: DbmNumber> StepperWorkspace<N> {
         if !effect.map_err(named)? {
             return Ok(false);
         }
-        store.expect(&self.effect.target, &mut self.packed);
+        store.anticipate(&self.effect.target, &mut self.packed);
         let source = if guarded { &self.guarded } else { zone };
         for NegativityCheck { reset, member, edge } in &self.effect.below {
             let x = index[usize::from(reset.from)];

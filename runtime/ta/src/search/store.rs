@@ -244,7 +244,7 @@ impl<N: DbmNumber> PassedList<N> {
     }
 
     /// Packs a discrete state that is [looked up](Self::look_up) soon, and has the processor fetch its place meanwhile.
-    pub(crate) fn expect(&self, state: &[i64], out: &mut PackedState) {
+    pub(crate) fn anticipate(&self, state: &[i64], out: &mut PackedState) {
         self.layout.pack(state, &mut out.words);
         out.hash = hash_words(&out.words);
         self.discrete.prefetch_place(out.hash);

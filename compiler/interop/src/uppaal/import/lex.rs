@@ -75,6 +75,8 @@ pub struct UppaalComment {
     pub trailing: bool,
 }
 
+const NO_DOUBLE: &str = "numbers with a fraction (`double`) are not supported";
+
 /// The longest first.
 const MARKS: &[&str] = &[
     "<<=", ">>=", "-->", ":=", "==", "!=", "<=", ">=", "<?", ">?", "&&", "||", "++", "--", "+=", "-=", "*=",
@@ -212,12 +214,30 @@ impl UppaalLexer<'_> {
         let digits = self.run(|c| c.is_ascii_digit());
         if self.char(0) == Some('.') && self.char(1).is_some_and(|c| c.is_ascii_digit()) {
             self.at = start;
-            return Err(self.fault("numbers with a fraction (`double`) are not supported"));
+            return Err(self.fault(NO_DOUBLE));
+        }
+        let span = |lexer: &Self| Span {
+            file: lexer.piece.file,
+            start: lexer.piece.chars[start].0,
+            end: lexer.last(),
+        };
+        if self.char(0).is_some_and(|c| c.is_ascii_alphabetic() || c == '_') {
+            let tail = self.run(|c| c.is_ascii_alphanumeric() || c == '_');
+            if tail.strip_prefix(['e', 'E']).is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit())) {
+                return Err(UppaalFault { span: span(self), message: NO_DOUBLE.to_owned() });
+            }
+            let hex = tail.strip_prefix(['x', 'X']).and_then(|hex| i64::from_str_radix(hex, 16).ok());
+            let next = match hex.filter(|_| digits == "0") {
+                Some(n) => format!("write `{n}`"),
+                None => "a space or an operator is missing".to_owned(),
+            };
+            let message = format!("`{digits}{tail}` is no number: UPPAAL's are decimal; {next}");
+            return Err(UppaalFault { span: span(self), message });
         }
         let number = digits.parse::<i64>().ok().filter(|n| *n <= i64::from(i32::MAX));
-        number.map(UppaalTokenKind::Int).ok_or_else(|| {
-            let span = Span { file: self.piece.file, start: self.piece.chars[start].0, end: self.last() };
-            UppaalFault { span, message: format!("{digits} is larger than UPPAAL's integers") }
+        number.map(UppaalTokenKind::Int).ok_or_else(|| UppaalFault {
+            span: span(self),
+            message: format!("{digits} is larger than UPPAAL's integers"),
         })
     }
 }

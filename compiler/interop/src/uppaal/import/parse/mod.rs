@@ -113,7 +113,10 @@ impl UppaalParser {
     }
 
     fn fault(&self, expected: &str) -> UppaalFault {
-        let message = format!("expected {expected}, found {}", self.peek().shown());
+        let mut message = format!("expected {expected}, found {}", self.peek().shown());
+        if *self.peek() == UppaalTokenKind::Mark("~") {
+            message += ", which is no operator of UPPAAL: `-1 - x` is `x` with every bit changed";
+        }
         UppaalFault { span: self.span(), message }
     }
 
@@ -129,10 +132,14 @@ impl UppaalParser {
                 self.next();
                 Ok(out)
             }
-            UppaalTokenKind::Word(_)
-            | UppaalTokenKind::Int(_)
-            | UppaalTokenKind::Mark(_)
-            | UppaalTokenKind::End => Err(self.fault(what)),
+            UppaalTokenKind::Word(w) => {
+                let message =
+                    format!("expected {what}; `{w}` is a word of UPPAAL's language: choose another name");
+                Err(UppaalFault { span: self.span(), message })
+            }
+            UppaalTokenKind::Int(_) | UppaalTokenKind::Mark(_) | UppaalTokenKind::End => {
+                Err(self.fault(what))
+            }
         }
     }
 
