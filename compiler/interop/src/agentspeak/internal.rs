@@ -57,12 +57,8 @@ pub fn infer(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result<(), Omis
         (".union" | ".intersection" | ".difference", [a, b, c]) => lists(walk, &[a, b, c]),
         (".delete", [element, a, b]) => {
             let id = walk.term(element)?;
-            if matches!(walk.types.get(id), AgentSpeakType::Number { .. }) {
-                return Err("with a number `.delete` takes away what is at that place".to_owned());
-            }
-            if matches!(walk.types.get(id), AgentSpeakType::Text) {
-                let message = "with a string `.delete` takes away parts of a string: `.occurrences` finds them, `.slice` cuts";
-                return Err(message.to_owned());
+            if let Some(other) = other_deletion(walk.types.get(id)) {
+                return Err(other.to_owned());
             }
             in_list(walk, element, a)?;
             lists(walk, &[a, b])
@@ -117,6 +113,16 @@ pub fn infer(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result<(), Omis
             Err(format!("hrdsl has no internal action like `{name}` with {} arguments", args.len()))
         }
     }
+}
+
+/// What `.delete` does in Jason where its first argument is not an element, but something of this type.
+fn other_deletion(first: &AgentSpeakType) -> Option<&'static str> {
+    if matches!(first, AgentSpeakType::Number { .. }) {
+        return Some("with a number `.delete` takes away what is at that place");
+    }
+    let cuts =
+        "with a string `.delete` takes away parts of a string: `.occurrences` finds them, `.slice` cuts";
+    matches!(first, AgentSpeakType::Text).then_some(cuts)
 }
 
 /// Functions in expressions.

@@ -46,6 +46,10 @@ impl HashIndex {
         ((u64::from(half) * self.slots.len() as u64) >> 32) as usize
     }
 
+    fn next(&self, at: usize) -> usize {
+        if at + 1 == self.slots.len() { 0 } else { at + 1 }
+    }
+
     /// Has the processor fetch the place of this half while it does other things.
     pub(crate) fn prefetch(&self, half: u32) {
         prefetch_index(&self.slots, self.home(half));
@@ -62,7 +66,7 @@ impl HashIndex {
             if (slot >> 32) as u32 == half && is(slot as u32) {
                 return Some(slot as u32);
             }
-            at = if at + 1 == self.slots.len() { 0 } else { at + 1 };
+            at = self.next(at);
         }
     }
 
@@ -80,7 +84,7 @@ impl HashIndex {
     fn put(&mut self, slot: u64) {
         let mut at = self.home((slot >> 32) as u32);
         while self.slots[at] != EMPTY {
-            at = if at + 1 == self.slots.len() { 0 } else { at + 1 };
+            at = self.next(at);
         }
         self.slots[at] = slot;
     }

@@ -108,19 +108,23 @@ pub(crate) struct SymbolicNode {
     pub next: u32,
 }
 
-/// Which nodes a greater one of the same discrete state drove out: only the path to them is kept.
+/// Nodes, a bit for each.
 #[derive(Default)]
-pub(crate) struct CoveredNodes {
+pub(crate) struct NodeSet {
     bits: Vec<u64>,
 }
 
-impl CoveredNodes {
+impl NodeSet {
+    pub(crate) fn bytes(&self) -> usize {
+        self.bits.len() * size_of::<u64>()
+    }
+
     pub(crate) fn has(&self, node: u32) -> bool {
         self.bits.get(node as usize / 64).is_some_and(|word| word >> (node % 64) & 1 == 1)
     }
 
     /// Whether it was not there.
-    fn add(&mut self, node: u32) -> bool {
+    pub(crate) fn add(&mut self, node: u32) -> bool {
         let (word, bit) = (node as usize / 64, 1 << (node % 64));
         if self.bits.len() <= word {
             self.bits.resize(word + 1, 0);
@@ -137,7 +141,8 @@ pub(crate) struct PassedList<N> {
     /// By discrete state its newest node.
     heads: Vec<u32>,
     pub nodes: Vec<SymbolicNode>,
-    pub covered: CoveredNodes,
+    /// Those that a greater one of the same discrete state drove out: only the path to them is kept.
+    pub covered: NodeSet,
     zones: Vec<N>,
     /// Where zones begin, by their hashes.
     places: HashIndex,
@@ -157,7 +162,7 @@ impl<N: DbmNumber> PassedList<N> {
             layout,
             heads: Vec::new(),
             nodes: Vec::new(),
-            covered: CoveredNodes::default(),
+            covered: NodeSet::default(),
             zones: Vec::new(),
             places: HashIndex::default(),
             ranks: Vec::new(),
@@ -176,7 +181,7 @@ impl<N: DbmNumber> PassedList<N> {
         self.discrete.bytes()
             + self.heads.len() * 4
             + self.nodes.len() * size_of::<SymbolicNode>()
-            + self.covered.bits.len() * 8
+            + self.covered.bytes()
             + self.zones.len() * size_of::<N>()
             + self.places.bytes()
             + self.ranks.len() * 4

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::{
     network::model::CompiledNetwork,
-    search::{options::SearchOrder, store::CoveredNodes},
+    search::{options::SearchOrder, store::NodeSet},
 };
 
 /// Waiting states.
@@ -29,8 +29,8 @@ pub(crate) struct WaitingList {
     level_count: usize,
     /// The greatest rank given so far.
     rank: u32,
-    /// Nodes that were taken, as bits, if the order wants to know.
-    taken: Vec<u64>,
+    /// Nodes that were taken, if the order wants to know.
+    taken: NodeSet,
     /// What the round has brought, in order.
     fresh: Vec<u32>,
     rng: ChaCha8Rng,
@@ -49,7 +49,7 @@ impl WaitingList {
             lowest: 0,
             level_count: 0,
             rank: 0,
-            taken: Vec::new(),
+            taken: NodeSet::default(),
             fresh: Vec::new(),
             rng: ChaCha8Rng::seed_from_u64(seed),
             overtaken: false,
@@ -73,11 +73,11 @@ impl WaitingList {
         self.by_time.as_ref().map_or(0, |heap| heap.capacity() * 16)
             + (self.queue.capacity() + self.level_count) * 4
             + self.heap.capacity() * 12
-            + self.taken.len() * 8
+            + self.taken.bytes()
     }
 
     /// Whether nothing waits; states that were driven out are forgotten, and so are those that arrive later than `latest`.
-    pub(crate) fn is_empty(&mut self, covered: &CoveredNodes, latest: Option<i64>) -> bool {
+    pub(crate) fn is_empty(&mut self, covered: &NodeSet, latest: Option<i64>) -> bool {
         let gone = |n: u32| covered.has(n);
         if let Some(heap) = &mut self.by_time {
             let late = |arrival: i64| latest.is_some_and(|l| arrival > l);
@@ -169,8 +169,7 @@ impl WaitingList {
     /// A state is driven out.
     pub(crate) fn covered(&mut self, node: u32) {
         if self.order == SearchOrder::Topological {
-            let (word, bit) = (node as usize / 64, node % 64);
-            self.overtaken |= self.taken.get(word).is_some_and(|w| w >> bit & 1 == 1);
+            self.overtaken |= self.taken.has(node);
         }
     }
 
@@ -197,7 +196,7 @@ impl WaitingList {
 
     /// Takes up to `most` states; orders other than breadth first take a part of those that wait, so that the newest still
     /// come first where few wait.
-    pub(crate) fn take(&mut self, covered: &CoveredNodes, most: usize, out: &mut Vec<u32>) {
+    pub(crate) fn take(&mut self, covered: &NodeSet, most: usize, out: &mut Vec<u32>) {
         out.clear();
         if self.by_time.is_some() {
             return self.take_earliest(covered, most.min(FEW), out);
@@ -219,11 +218,7 @@ impl WaitingList {
                 continue;
             }
             if self.order == SearchOrder::Topological {
-                let word = node as usize / 64;
-                if self.taken.len() <= word {
-                    self.taken.resize(word + 1, 0);
-                }
-                self.taken[word] |= 1 << (node % 64);
+                self.taken.add(node);
             }
             out.push(node);
         }
@@ -236,7 +231,7 @@ const FEW: usize = 64;
 
 impl WaitingList {
     /// Up to `most` states that arrive at the same time.
-    fn take_earliest(&mut self, covered: &CoveredNodes, most: usize, out: &mut Vec<u32>) {
+    fn take_earliest(&mut self, covered: &NodeSet, most: usize, out: &mut Vec<u32>) {
         let Some(heap) = &mut self.by_time else { return };
         let mut first = None;
         while out.len() < most

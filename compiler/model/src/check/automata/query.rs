@@ -26,6 +26,7 @@ use crate::{
 };
 
 /// What the names of a network stand for.
+#[derive(Default)]
 pub(super) struct QueryNetwork {
     name: String,
     /// In the network's order.
@@ -115,16 +116,12 @@ impl AutomataPhase<'_, '_> {
         let network = &self.s.networks[usize::from(id.0)];
         let mut net = QueryNetwork {
             name: network.name.clone(),
-            automata: Vec::new(),
-            locations: OrderedMap::default(),
-            clocks: OrderedMap::default(),
-            stands: None,
             env: ExprEnv {
                 noun: Some(Noun::Variable),
                 shared: self.shared.scope.clone(),
                 ..ExprEnv::default()
             },
-            values: ExprEnv::default(),
+            ..QueryNetwork::default()
         };
         for clock in self.shared.scope.clocks.keys() {
             add_clock(&mut net.clocks, clock.clone());
