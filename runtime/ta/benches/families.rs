@@ -3,7 +3,8 @@
 //! `cargo bench -p hrdsl-ta --bench families -- [NAME] [--size N] [--threads N] [--common-time] [--reference]
 //! [--order breadth|depth|topological] [--skip-committed] [--tchecker PATH] [--examples FOLDER]`
 //!
-//! `cargo bench -p hrdsl-ta --bench families -- --speedup [--threads N]`: the wall clock with one thread and with two, or N.
+//! `cargo bench -p hrdsl-ta --bench families -- --speedup [--threads N]`: the wall clock with one thread and with two, or N; and of as many
+//! processes with one thread at once, which is what the machine gives.
 //!
 //! Each row is a process of its own, so that its seconds (user and system, of all threads) and its memory (the most that was
 //! resident) are those of the whole process, like TChecker's. TChecker's figures are read from `benches/tchecker.csv`, unless
