@@ -118,6 +118,7 @@ codes! {
     UNREACHABLE_LOCATION = 505 "a location that no edge reaches",
     TIME_STOPS = 506 "an invariant that stops time",
     NO_TIME_PASSES_HERE = 507 "a cycle in which no time passes",
+    CLOCKS_COMPARED = 508 "two clocks compared where one stands still",
     URGENT_GUARD = 511 "a clock guard on an edge of an urgent channel",
     BAD_JOINT = 512 "a multi-way channel that is used as another kind",
     NO_ACTOR = 513 "an event in an automaton without an actor",

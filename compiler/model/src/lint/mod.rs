@@ -8,6 +8,7 @@ mod applicable;
 mod belief_never_added;
 mod cannot_fail;
 mod channels;
+mod clocks_compared;
 mod committed_cycle;
 mod contradiction;
 mod cross_bins;
@@ -62,6 +63,7 @@ const RULES: &[LintRule] = &[
     unreachable_location::check,
     time_stops::check,
     committed_cycle::check,
+    clocks_compared::check,
     channels::check,
     never_triggered::check,
     cannot_fail::check,
