@@ -11,8 +11,10 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a ScenarioFacts<'a>, issues
         let members = || network.automata.iter().filter_map(|id| scenario.automata.get(number(*id)));
         let Some(stops) = members().find_map(stopping) else { continue };
         for span in members().flat_map(comparing) {
-            let message =
-                format!("two clocks are compared in the network `{}`, in which `{stops}` stops one", network.name);
+            let message = format!(
+                "two clocks are compared in the network `{}`, in which `{stops}` stops one",
+                network.name
+            );
             issues.push(
                 Diagnostic::warning(DiagnosticCode::CLOCKS_COMPARED, span, message)
                     .here("what zones say of a difference relies on clocks that all run")
