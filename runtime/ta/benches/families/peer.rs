@@ -108,7 +108,9 @@ impl Peer {
     /// With what the figures were measured.
     pub fn origin(&self) -> String {
         match self {
-            Peer::Known(_, said) => said.clone(),
+            Peer::Known(_, said) => format!(
+                "{said}.\nIts seconds are that machine's, ours are this one's: to compare them, measure both with --tchecker and --examples"
+            ),
             Peer::Here(program, _) => format!("{}, measured now", program.display()),
         }
     }
