@@ -123,6 +123,21 @@ pub struct Scenario {
     pub names: Resolutions,
 }
 
+impl Scenario {
+    /// The automata of a network, in its order.
+    pub(crate) fn members(&self, network: &Network) -> impl Iterator<Item = &TypedAutomaton> {
+        network.automata.iter().filter_map(|id| self.automata.get(usize::from(id.0)))
+    }
+
+    /// A location of a network in which a clock stands still, with its automaton's name.
+    pub(crate) fn stopping_location(&self, network: &Network) -> Option<String> {
+        self.members(network).find_map(|automaton| {
+            let location = automaton.locations.iter().find(|l| !l.stopped.is_empty())?;
+            Some(format!("{}.{}", automaton.name, location.name))
+        })
+    }
+}
+
 /// Where names stand that a diagnostic points at; each list is by the id of its elements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct DeclarationPlaces {

@@ -1,6 +1,5 @@
 //! HR0508: edges and invariants that compare two clocks, in a network in which some location stops a clock: nothing can be asked of it.
 
-use hrdsl_ir::ta::AutomatonId;
 use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use super::facts::ScenarioFacts;
@@ -8,9 +7,8 @@ use crate::{Scenario, TypedAutomaton, TypedClockConstraint};
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     for network in &scenario.networks {
-        let members = || network.automata.iter().filter_map(|id| scenario.automata.get(number(*id)));
-        let Some(stops) = members().find_map(stopping) else { continue };
-        for span in members().flat_map(comparing) {
+        let Some(stops) = scenario.stopping_location(network) else { continue };
+        for span in scenario.members(network).flat_map(comparing) {
             let message = format!(
                 "two clocks are compared in the network `{}`, in which `{stops}` stops one",
                 network.name
@@ -22,16 +20,6 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a ScenarioFacts<'a>, issues
             );
         }
     }
-}
-
-fn number(id: AutomatonId) -> usize {
-    usize::from(id.0)
-}
-
-/// A location that stops a clock.
-fn stopping(automaton: &TypedAutomaton) -> Option<String> {
-    let location = automaton.locations.iter().find(|l| !l.stopped.is_empty())?;
-    Some(format!("{}.{}", automaton.name, location.name))
 }
 
 /// The edges and locations that compare two clocks.

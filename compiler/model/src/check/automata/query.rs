@@ -116,6 +116,7 @@ impl AutomataPhase<'_, '_> {
         let network = &self.s.networks[usize::from(id.0)];
         let mut net = QueryNetwork {
             name: network.name.clone(),
+            stands: self.s.stopping_location(network),
             env: ExprEnv {
                 noun: Some(Noun::Variable),
                 shared: self.shared.scope.clone(),
@@ -132,9 +133,7 @@ impl AutomataPhase<'_, '_> {
             let of = &self.s.automata[at].name;
             net.automata.push(of.clone());
             for (number, location) in (0u16..).zip(&self.s.automata[at].locations) {
-                let name = format!("{of}.{}", location.name);
-                net.stands = net.stands.or_else(|| (!location.stopped.is_empty()).then(|| name.clone()));
-                net.locations.insert(name, (place, LocationId(number)));
+                net.locations.insert(format!("{of}.{}", location.name), (place, LocationId(number)));
             }
             let Some(scope) = self.scopes.get(&at) else { continue };
             for local in scope.names.values() {

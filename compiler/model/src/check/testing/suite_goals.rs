@@ -6,7 +6,8 @@ use hrdsl_syntax::ast::{self, NameSyntax, SuiteMember, SuiteMemberKind, SuiteSet
 use super::{phase::TestingPhase, suite::SuiteMembers};
 use crate::check::template::CheckerPhase;
 use crate::{
-    AutomatonId, BoundaryStep, Dimension, NetworkId, QueryId, RequirementId, TypedQueryKind, TypedSearchGoal,
+    BoundaryStep, Dimension, NetworkId, QueryId, RequirementId, TypedAutomaton, TypedQueryKind,
+    TypedSearchGoal,
     noun::Noun,
     report::{coverage::bad_suite, types},
 };
@@ -116,12 +117,11 @@ impl TestingPhase<'_, '_> {
         };
         let Some(at) = suite.members.iter().find(asks).map(|m| m.span) else { return };
         let network = &self.s.networks[usize::from(network.0)];
-        let compares = |id: &AutomatonId| {
-            let automaton = &self.s.automata[usize::from(id.0)];
+        let compares = |automaton: &TypedAutomaton| {
             automaton.edges.iter().any(|e| !e.clock_guard.is_empty())
                 || automaton.locations.iter().any(|l| !l.invariant.is_empty())
         };
-        if network.automata.iter().any(compares) || !self.s.requirements.is_empty() {
+        if self.s.members(network).any(compares) || !self.s.requirements.is_empty() {
             return;
         }
         let message =
